@@ -1,0 +1,1 @@
+"""Stability of face-gear drives."""
