@@ -1,0 +1,326 @@
+"""Periodic linear systems with rank-one loads (chapter 2, Eqs. 2-1 to 2-4 and 2-14).
+
+Every mesh load of a face-gear drive, transverse or torsional, is felt through one displacement
+u = φ(t)ᵀq and answers with one force, so that all systems of the text have the form
+
+    M q̈ + C q̇ + K q + Σ_i w_i(t) φ_i(t) [ m_i ü_i + c_i u̇_i + k_i u_i ] = 0,    u_i = φ_i(t)ᵀ q
+
+with constant M, C, K at a given speed. Time is measured by the fraction x = t / T0 of the period.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.piecewise import (
+    Array,
+    FourierSeries,
+    PiecewiseChebyshev,
+    Side,
+    fourier_series,
+    merge_breakpoints,
+    real_array,
+)
+
+Rate = Literal["frozen", "total"]
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLoad:
+    """One rank-one load: force φ w [m ü + c u̇ + k u] on the displacement u = φᵀq.
+
+    Parameters
+    ----------
+    shape : PiecewiseChebyshev
+        Shape vector φ, n components.
+    stiffness, damping, mass : float
+        k [N/m], c [N s/m], m [kg] (or rotational units, as the coordinates have it), not negative.
+    rate : {"frozen", "total"}
+        "frozen": u̇ = φᵀq̇, ü = φᵀq̈ (the transverse chapters). "total": the derivative goes through the
+        shape vector, u̇ = φᵀq̇ + φ̇ᵀq, ü = φᵀq̈ + 2φ̇ᵀq̇ + φ̈ᵀq (chapter 7). A jump of φ then means that contact
+        is made or lost and gives no impulse; a jump of the slope φ̇ gives the mass a kick
+        (:meth:`PeriodicSystem.velocity_kicks`).
+    weight : PiecewiseChebyshev, optional
+        Scalar periodic factor w of the force, for loads whose strength varies (Mathieu, Hill, Meissner).
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the parameter and what would be valid.
+    """
+
+    shape: PiecewiseChebyshev
+    stiffness: float = 0.0
+    damping: float = 0.0
+    mass: float = 0.0
+    rate: Rate = "frozen"
+    weight: PiecewiseChebyshev | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.shape, PiecewiseChebyshev):
+            raise TypeError(f"shape must be a PiecewiseChebyshev; got {type(self.shape).__name__}")
+        for name in ("stiffness", "damping", "mass"):
+            value = getattr(self, name)
+            object.__setattr__(self, name, _number(value, name))
+            if getattr(self, name) < 0.0:
+                raise ValueError(f"{name} must be a finite number >= 0; got {value!r}")
+        if self.rate not in ("frozen", "total"):
+            raise ValueError(f'rate must be "frozen" or "total"; got {self.rate!r}')
+        if self.weight is not None and self.weight.components != 1:
+            raise ValueError(f"weight must have one component; got {self.weight.components}")
+        if self.weight is not None and self.mass > 0.0:
+            raise ValueError(f"mass must be 0 for a load with a weight; got {self.mass!r}")
+        if self.rate == "total" and self.mass > 0.0:
+            jump = float(np.abs(self.shape.jumps()).max())
+            if jump > 1e-9 * self.shape.largest:
+                raise ValueError(
+                    f"mass must be 0 where a shape vector with total rate jumps; got mass {self.mass!r} "
+                    f"and a jump of {jump:.3g}: a mass cannot be moved by a finite distance in no time"
+                )
+
+    @cached_property
+    def slope(self) -> PiecewiseChebyshev:
+        """dφ/dx, x the fraction of the period."""
+        return self.shape.derivative(1)
+
+    @cached_property
+    def curvature(self) -> PiecewiseChebyshev:
+        """d²φ/dx², x the fraction of the period, impulses at slope jumps left out."""
+        return self.shape.derivative(2)
+
+    @cached_property
+    def breakpoints(self) -> Array:
+        """Instants where φ or w is not smooth, fractions of the period, ascending."""
+        if self.weight is None:
+            return self.shape.breakpoints
+        return merge_breakpoints([self.shape.breakpoints, self.weight.breakpoints])
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSystem:
+    """M q̈ + C q̇ + K q + Σ (rank-one loads) = 0 over one period T0 (2-1, 2-2).
+
+    Parameters
+    ----------
+    mass : array_like, shape (n, n)
+        M, symmetric positive definite, constant part.
+    damping, stiffness : array_like, shape (n, n)
+        C and K, constant parts; gyroscopic C and non-symmetric K are allowed.
+    loads : sequence of ContactLoad
+        The periodic loads, shape vectors with n components.
+    period : float
+        T0 [s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not match, entries are not finite, the mass is not symmetric positive definite, or the
+        period is not positive.
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    loads: tuple[ContactLoad, ...]
+    period: float
+
+    def __post_init__(self) -> None:
+        size = np.shape(self.mass)[0] if np.ndim(self.mass) else 0
+        for name in ("mass", "damping", "stiffness"):
+            matrix = real_array(getattr(self, name), name, 2)
+            if matrix.shape != (size, size) or size == 0:
+                raise ValueError(f"{name} must be square and as large as mass; got shape {matrix.shape}")
+            object.__setattr__(self, name, matrix)
+        if np.abs(self.mass - self.mass.T).max() > 1e-12 * np.abs(self.mass).max():
+            raise ValueError("mass must be symmetric; got a non-symmetric matrix")
+        try:
+            np.linalg.cholesky(self.mass)
+        except np.linalg.LinAlgError:
+            raise ValueError(
+                "mass must be positive definite; got a matrix with a non-positive eigenvalue"
+            ) from None
+        object.__setattr__(self, "loads", tuple(self.loads))
+        for number, load in enumerate(self.loads):
+            if not isinstance(load, ContactLoad):
+                raise TypeError(f"loads[{number}] must be a ContactLoad; got {type(load).__name__}")
+            if load.shape.components != size:
+                raise ValueError(
+                    f"loads[{number}].shape must have {size} components, one a coordinate; "
+                    f"got {load.shape.components}"
+                )
+        object.__setattr__(self, "period", _number(self.period, "period"))
+        if self.period <= 0.0:
+            raise ValueError(f"period must be a finite number > 0 (seconds); got {self.period!r}")
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n; the state has 2n."""
+        return int(self.mass.shape[0])
+
+    @cached_property
+    def breakpoints(self) -> Array:
+        """Union of the loads' breakpoints with 0, fractions of the period, ascending."""
+        return merge_breakpoints([np.zeros(1), *(load.breakpoints for load in self.loads)])
+
+    def mass_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """Assembled M(t), shape (..., n, n)."""
+        return self._assemble(fraction, side)[0]
+
+    def damping_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """Assembled C(t), shape (..., n, n)."""
+        return self._assemble(fraction, side)[1]
+
+    def stiffness_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """Assembled K(t), shape (..., n, n); the impulses of φ̈ at slope jumps are :meth:`velocity_kicks`."""
+        return self._assemble(fraction, side)[2]
+
+    def state_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """A(t) of Ẋ = A X, X = (q, q̇), Eq. (2-4), shape (..., 2n, 2n)."""
+        mass, damping, stiffness = self._assemble(fraction, side)
+        right = np.linalg.solve(mass, np.concatenate([stiffness, damping], axis=-1))
+        state = np.zeros((*mass.shape[:-2], 2 * self.size, 2 * self.size))
+        state[..., : self.size, self.size :] = np.eye(self.size)
+        state[..., self.size :, :] = -right
+        return state
+
+    def _assemble(self, fraction: ArrayLike, side: Side) -> tuple[Array, Array, Array]:
+        x = np.asarray(fraction, dtype=float)
+        mass, damping, stiffness = (
+            np.broadcast_to(matrix, (*x.shape, self.size, self.size)).copy()
+            for matrix in (self.mass, self.damping, self.stiffness)
+        )
+        for load in self.loads:
+            phi = load.shape(x, side)
+            force = phi if load.weight is None else phi * load.weight(x, side)
+            mass += load.mass * force[..., :, None] * phi[..., None, :]
+            damping += load.damping * force[..., :, None] * phi[..., None, :]
+            stiffness += load.stiffness * force[..., :, None] * phi[..., None, :]
+            if load.rate == "total":
+                rate = load.slope(x, side) / self.period
+                stiffness += load.damping * force[..., :, None] * rate[..., None, :]
+                if load.mass > 0.0:
+                    second = load.curvature(x, side) / self.period**2
+                    damping += 2.0 * load.mass * force[..., :, None] * rate[..., None, :]
+                    stiffness += load.mass * force[..., :, None] * second[..., None, :]
+        return mass, damping, stiffness
+
+    def impulses(self) -> list[tuple[float, Array]]:
+        """Impulsive part of K(t): Σ m φ Δφ̇ᵀ at each slope jump of a load with mass and total rate.
+
+        Returns
+        -------
+        list of (fraction, matrix of shape (n, n))
+            Ascending fractions; empty if there are none.
+        """
+        found: dict[float, Array] = {}
+        for load in self.loads:
+            if load.rate != "total" or load.mass == 0.0:
+                continue
+            slope_jumps = load.slope.jumps() / self.period
+            largest = load.slope.largest / self.period
+            for breakpoint_, jump in zip(load.shape.breakpoints, slope_jumps, strict=True):
+                # Below this it is rounding of the fit, as where a smooth function crosses the period's end.
+                if np.abs(jump).max() <= 1e-11 * largest:
+                    continue
+                nearest = self.breakpoints[np.argmin(np.abs(self.breakpoints - breakpoint_))]
+                at = float(nearest)
+                matrix = load.mass * np.outer(load.shape(breakpoint_), jump)
+                found[at] = found[at] + matrix if at in found else matrix
+        return sorted(found.items(), key=lambda item: item[0])
+
+    def velocity_kicks(self) -> list[tuple[float, Array]]:
+        """Jumps of the velocity where a contact mass with total rate meets a slope jump: q̇⁺ = q̇⁻ + P q.
+
+        P = −M(t)⁻¹ Σ m φ Δφ̇ᵀ, which for M = I and one load is −φ m/(1 + m φᵀφ) Δφ̇ᵀ.
+
+        Returns
+        -------
+        list of (fraction, P of shape (n, n))
+            Ascending fractions; empty if there are none.
+        """
+        kicks: list[tuple[float, Array]] = []
+        for at, matrix in self.impulses():
+            kick: Array = -np.linalg.solve(self.mass_matrix(at), matrix)
+            kicks.append((at, kick))
+        return kicks
+
+    def fourier(self, order: int) -> tuple[FourierSeries, FourierSeries, FourierSeries]:
+        """Fourier series (2-14) of the assembled M(t), C(t), K(t), impulses of φ̈ included in K.
+
+        Parameters
+        ----------
+        order : int
+            Highest harmonic S of 2π/T0.
+
+        Returns
+        -------
+        mass, damping, stiffness : FourierSeries
+            Constant parts are in the means. :func:`fourier_series` expands any other function of these
+            matrices, as M(t)⁻¹K(t), in the same way.
+        """
+        series = [
+            fourier_series(matrix, self.breakpoints, order)
+            for matrix in (self.mass_matrix, self.damping_matrix, self.stiffness_matrix)
+        ]
+        mean, cosine, sine = series[2].mean, series[2].cosine, series[2].sine
+        harmonics = 2.0 * np.pi * (1 + np.arange(order))
+        for at, matrix in self.impulses():
+            share = matrix / self.period
+            mean = mean + share
+            cosine = cosine + 2.0 * np.cos(harmonics * at)[:, None, None] * share
+            sine = sine + 2.0 * np.sin(harmonics * at)[:, None, None] * share
+        return series[0], series[1], FourierSeries(mean, cosine, sine)
+
+    def replace_loads(
+        self,
+        *,
+        mass: ArrayLike | None = None,
+        damping: ArrayLike | None = None,
+        stiffness: ArrayLike | None = None,
+    ) -> PeriodicSystem:
+        """Return the system with other load parameters, each one number for all loads or one a load."""
+        masses = self._per_load(mass, "mass")
+        dampings = self._per_load(damping, "damping")
+        stiffnesses = self._per_load(stiffness, "stiffness")
+        loads = tuple(
+            replace(load, mass=m, damping=c, stiffness=k)
+            for load, m, c, k in zip(self.loads, masses, dampings, stiffnesses, strict=True)
+        )
+        return replace(self, loads=loads)
+
+    def _per_load(self, values: ArrayLike | None, name: str) -> list[float]:
+        """Return one value a load: those given, or else the present ones."""
+        if values is None:
+            return [float(getattr(load, name)) for load in self.loads]
+        array = np.asarray(values, dtype=float)
+        if array.shape not in ((), (len(self.loads),)):
+            raise ValueError(
+                f"{name} must be one number or {len(self.loads)}, one a load; got shape {array.shape}"
+            )
+        return [float(value) for value in np.broadcast_to(array, (len(self.loads),))]
+
+    def shift(self, phase: float) -> PeriodicSystem:
+        """Return the system with the origin of time moved by `phase` of a period; multipliers stay."""
+        loads = tuple(
+            replace(
+                load,
+                shape=load.shape.shift(phase),
+                weight=None if load.weight is None else load.weight.shift(phase),
+            )
+            for load in self.loads
+        )
+        return replace(self, loads=loads)
+
+
+def _number(value: float, name: str) -> float:
+    """Return a finite real number as a float."""
+    if isinstance(value, bool) or np.ndim(value) != 0 or not isinstance(value, (int, float, np.number)):
+        raise TypeError(f"{name} must be a real number; got {value!r}")
+    if np.iscomplexobj(value) or not np.isfinite(value):
+        raise ValueError(f"{name} must be finite and real; got {value!r}")
+    return float(value)
