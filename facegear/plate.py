@@ -7,19 +7,25 @@ the dissertation. In (4-4) the letter t stands for r where second derivatives ar
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy import linalg, optimize, special
 
+from facegear.geometry import Drive
+from facegear.parameters import STEEL, Material, integer_at_least, within
+
 FloatArray = NDArray[np.float64]
 
 BORE_RATIO_RANGE = (0.05, 0.9)
 MAX_NODAL_CIRCLES = 4
 MAX_NODAL_DIAMETERS = 10
+# Kirchhoff's theory leaves out shear, which a thicker disk feels in its higher modes.
+THICKNESS_RATIO_RANGE = (0.001, 0.2)
 
 # The modes are analytic on the plate; their nearest singularity, x = 0, lies at least 0.05 away from a bore
 # of 0.05. Measured over the whole admissible range, these sizes leave only rounding errors.
@@ -37,7 +43,7 @@ class RadialModes:
     ----------
     bore_ratio : float
         c = b/a [-].
-    poisson_ratio : float
+    poissons_ratio : float
         ν [-].
     nodal_diameters : int
         n.
@@ -49,7 +55,7 @@ class RadialModes:
     """
 
     bore_ratio: float
-    poisson_ratio: float
+    poissons_ratio: float
     nodal_diameters: int
     roots: FloatArray
     coefficients: FloatArray
@@ -90,7 +96,7 @@ class RadialModes:
 
 @lru_cache(maxsize=512)
 def radial_modes(
-    bore_ratio: float, poisson_ratio: float, nodal_circles: int, nodal_diameters: int
+    bore_ratio: float, poissons_ratio: float, nodal_circles: int, nodal_diameters: int
 ) -> RadialModes:
     """Radial modes with 0, ..., `nodal_circles` nodal circles and exactly `nodal_diameters` nodal diameters.
 
@@ -101,7 +107,7 @@ def radial_modes(
     ----------
     bore_ratio : float
         c = b/a [-], 0.05 to 0.9.
-    poisson_ratio : float
+    poissons_ratio : float
         ν [-], 0 to 0.5.
     nodal_circles : int
         M, 0 to 4. The clamped edge is not counted.
@@ -115,8 +121,8 @@ def radial_modes(
 
     Raises
     ------
-    ValueError
-        If an argument lies outside its range.
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range.
     ArithmeticError
         If the determinant does not change sign at a Rayleigh-Ritz value.
 
@@ -125,24 +131,17 @@ def radial_modes(
     >>> (radial_modes(0.5, 0.3, 0, 0).roots ** 2).round(3)
     array([13.024])
     """
-    lowest, highest = BORE_RATIO_RANGE
-    if not lowest <= bore_ratio <= highest:
-        raise ValueError(f"bore_ratio must lie between {lowest} and {highest}, got {bore_ratio!r}")
-    if not 0.0 <= poisson_ratio <= 0.5:
-        raise ValueError(f"poisson_ratio must lie between 0 and 0.5, got {poisson_ratio!r}")
-    if nodal_circles not in range(MAX_NODAL_CIRCLES + 1):
-        raise ValueError(f"nodal_circles must be an integer 0 to {MAX_NODAL_CIRCLES}, got {nodal_circles!r}")
-    if nodal_diameters not in range(MAX_NODAL_DIAMETERS + 1):
-        raise ValueError(
-            f"nodal_diameters must be an integer 0 to {MAX_NODAL_DIAMETERS}, got {nodal_diameters!r}"
-        )
-    estimates = _ritz_roots(bore_ratio, poisson_ratio, nodal_circles, nodal_diameters)
-    plate = (nodal_diameters, bore_ratio, poisson_ratio)
+    within("bore_ratio", bore_ratio, *BORE_RATIO_RANGE)
+    within("poissons_ratio", poissons_ratio, 0.0, 0.5)
+    _count("nodal_circles", nodal_circles, MAX_NODAL_CIRCLES)
+    _count("nodal_diameters", nodal_diameters, MAX_NODAL_DIAMETERS)
+    estimates = _ritz_roots(bore_ratio, poissons_ratio, nodal_circles, nodal_diameters)
+    plate = (nodal_diameters, bore_ratio, poissons_ratio)
     roots = np.array([_refined_root(estimate, *plate) for estimate in estimates])
     coefficients = np.array([_null_vector(root, *plate) for root in roots])
 
     x, weights = plate_quadrature(bore_ratio)
-    modes = RadialModes(bore_ratio, poisson_ratio, nodal_diameters, roots, coefficients)
+    modes = RadialModes(bore_ratio, poissons_ratio, nodal_diameters, roots, coefficients)
     norms = np.sqrt((modes(x) ** 2) @ weights)
     coefficients *= (np.sign(modes(1.0)) / norms)[:, np.newaxis]
     for array in (roots, coefficients):
@@ -170,7 +169,7 @@ def plate_quadrature(bore_ratio: float) -> tuple[FloatArray, FloatArray]:
 
 
 def centrifugal_stress(
-    x: ArrayLike, bore_ratio: float, poisson_ratio: float
+    x: ArrayLike, bore_ratio: float, poissons_ratio: float
 ) -> tuple[FloatArray, FloatArray]:
     """Membrane stress of the rotating disk, over ρ a² Ω² (4-2, 4-3).
 
@@ -180,7 +179,7 @@ def centrifugal_stress(
         Radius over outer radius [-].
     bore_ratio : float
         c = b/a [-].
-    poisson_ratio : float
+    poissons_ratio : float
         ν [-].
 
     Returns
@@ -190,7 +189,7 @@ def centrifugal_stress(
         the rim.
     """
     x = np.asarray(x, dtype=float)
-    nu, c2 = poisson_ratio, bore_ratio**2
+    nu, c2 = poissons_ratio, bore_ratio**2
     d8 = 8 * ((1 + nu) + (1 - nu) * c2)
     b0 = (1 - nu) * c2 * ((3 + nu) - (1 + nu) * c2) / d8
     b1 = (1 + nu) * ((3 + nu) + (1 - nu) * c2**2) / d8
@@ -214,11 +213,119 @@ def centrifugal_stiffness(modes: RadialModes) -> FloatArray:
         the disk.
     """
     x, weights = plate_quadrature(modes.bore_ratio)
-    radial, hoop = centrifugal_stress(x, modes.bore_ratio, modes.poisson_ratio)
+    radial, hoop = centrifugal_stress(x, modes.bore_ratio, modes.poissons_ratio)
     value, slope = modes(x), modes(x, derivative=1)
     n = modes.nodal_diameters
     matrix = (slope * (weights * radial)) @ slope.T + (value * (weights * n**2 * hoop / x**2)) @ value.T
     return (matrix + matrix.T) / 2
+
+
+@dataclass(frozen=True)
+class Body:
+    """Face-gear body: an annular disk clamped at the bore, free at the outer radius of the teeth.
+
+    Parameters
+    ----------
+    drive : Drive
+        Its outer radius R2 (3-18) is the outer radius a of the disk.
+    thickness_ratio : float
+        h/a [-], 0.001 to 0.2.
+    bore_radius : float
+        b [m]; b/a from 0.05 to 0.9, and b below the inner radius R1 of the teeth.
+    material : Material
+        Density, elasticity and damping.
+    nodal_circles : int
+        M, the largest number of nodal circles of the modes, 0 to 4.
+    nodal_diameters : int
+        N, the largest number of nodal diameters, 0 to 10.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range.
+    """
+
+    drive: Drive
+    thickness_ratio: float
+    bore_radius: float = 0.05
+    material: Material = STEEL
+    nodal_circles: int = 1
+    nodal_diameters: int = 3
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.drive, Drive):
+            raise TypeError(f"drive must be a Drive, got {self.drive!r}")
+        if not isinstance(self.material, Material):
+            raise TypeError(f"material must be a Material, got {self.material!r}")
+        within("thickness_ratio", self.thickness_ratio, *THICKNESS_RATIO_RANGE)
+        lowest, highest = (ratio * self.outer_radius for ratio in BORE_RATIO_RANGE)
+        within("bore_radius", self.bore_radius, lowest, highest, "m")
+        if self.bore_radius >= self.drive.inner_radius:
+            raise ValueError(
+                f"bore_radius must be smaller than the inner radius {self.drive.inner_radius:.6g} m of the "
+                f"teeth, got {self.bore_radius!r} m"
+            )
+        _count("nodal_circles", self.nodal_circles, MAX_NODAL_CIRCLES)
+        _count("nodal_diameters", self.nodal_diameters, MAX_NODAL_DIAMETERS)
+
+    @property
+    def outer_radius(self) -> float:
+        """Outer radius a = R2 [m]."""
+        return self.drive.outer_radius
+
+    @property
+    def thickness(self) -> float:
+        """Thickness h [m]."""
+        return self.thickness_ratio * self.outer_radius
+
+    @property
+    def bore_ratio(self) -> float:
+        """Bore ratio c = b/a [-]."""
+        return self.bore_radius / self.outer_radius
+
+    @property
+    def mass(self) -> float:
+        """Mass of the disk, ρπ(a² - b²)h [kg]."""
+        area = math.pi * (self.outer_radius**2 - self.bore_radius**2)
+        return self.material.density * area * self.thickness
+
+    @property
+    def bending_stiffness(self) -> float:
+        """D = E h³/(12 (1 - ν²)) [N m]."""
+        return self.material.youngs_modulus * self.thickness**3 / (12 * (1 - self.material.poissons_ratio**2))
+
+    @cached_property
+    def modes(self) -> tuple[RadialModes, ...]:
+        """Radial modes for n = 0, ..., N, on unit outer radius: R_mn(r) = modes[n](r/a)[m]/a (4-6)."""
+        nu = self.material.poissons_ratio
+        numbers = range(self.nodal_diameters + 1)
+        return tuple(radial_modes(self.bore_ratio, nu, self.nodal_circles, n) for n in numbers)
+
+    @cached_property
+    def eigenvalues(self) -> FloatArray:
+        """Squared natural frequencies at rest, β_mn⁴ D/(ρh) [1/s²] (4-9), shape (M + 1, N + 1)."""
+        area_density = self.material.density * self.thickness
+        roots = np.stack([modes.roots for modes in self.modes], axis=1)
+        values: FloatArray = roots**4 * self.bending_stiffness / (area_density * self.outer_radius**4)
+        values.setflags(write=False)
+        return values
+
+    def natural_frequencies(self) -> FloatArray:
+        """Undamped natural frequencies of the disk at rest.
+
+        Returns
+        -------
+        ndarray, shape (M + 1, N + 1)
+            Row m, column n: the mode with m nodal circles and n nodal diameters [Hz].
+        """
+        return np.sqrt(self.eigenvalues) / (2 * math.pi)
+
+
+def _count(name: str, value: int, highest: int) -> int:
+    number = integer_at_least(name, value, 0)
+    if number > highest:
+        raise ValueError(f"{name} must be an integer from 0 to {highest}, got {value!r}")
+    return number
 
 
 def _bessel_functions(
@@ -248,12 +355,12 @@ def _bessel_functions(
 
 
 def _boundary_matrix(
-    root: float, n: int, bore_ratio: float, poisson_ratio: float
+    root: float, n: int, bore_ratio: float, poissons_ratio: float
 ) -> tuple[FloatArray, FloatArray]:
     """Boundary conditions (4-4) on the four factors of (4-6), columns scaled; and the scales, shape (4,)."""
     edges = np.array([bore_ratio, 1.0])
     value, slope, curvature = _bessel_functions(n, root, edges, bore_ratio)
-    inner, rim, nu = 0, 1, poisson_ratio
+    inner, rim, nu = 0, 1, poissons_ratio
     # Where the shear condition takes d/dr of the Laplacian: it is -λ² f for J, Y and +λ² f for I, K.
     laplacian_sign = np.array([-1.0, -1.0, 1.0, 1.0])
     matrix = np.stack(
@@ -271,28 +378,28 @@ def _boundary_matrix(
     return matrix / scales, scales
 
 
-def _refined_root(estimate: float, n: int, bore_ratio: float, poisson_ratio: float) -> float:
+def _refined_root(estimate: float, n: int, bore_ratio: float, poissons_ratio: float) -> float:
     """Root λ of the determinant next to an estimate, to rounding."""
 
     def determinant(root: float) -> float:
-        return float(np.linalg.det(_boundary_matrix(root, n, bore_ratio, poisson_ratio)[0]))
+        return float(np.linalg.det(_boundary_matrix(root, n, bore_ratio, poissons_ratio)[0]))
 
     low, high = estimate * (1 - _BRACKET), estimate * (1 + _BRACKET)
     if determinant(low) * determinant(high) >= 0:
         raise ArithmeticError(
             f"no root of the plate determinant at λ = {estimate} for n = {n}, bore ratio {bore_ratio}, "
-            f"Poisson ratio {poisson_ratio}"
+            f"Poisson ratio {poissons_ratio}"
         )
     return float(optimize.brentq(determinant, low, high, xtol=1e-15 * estimate, rtol=4 * np.finfo(float).eps))
 
 
-def _null_vector(root: float, n: int, bore_ratio: float, poisson_ratio: float) -> FloatArray:
+def _null_vector(root: float, n: int, bore_ratio: float, poissons_ratio: float) -> FloatArray:
     """Factors of the four Bessel functions that meet the boundary conditions at a root, shape (4,)."""
-    matrix, scales = _boundary_matrix(root, n, bore_ratio, poisson_ratio)
+    matrix, scales = _boundary_matrix(root, n, bore_ratio, poissons_ratio)
     return np.asarray(np.linalg.svd(matrix)[2][-1] / scales)
 
 
-def _ritz_roots(bore_ratio: float, poisson_ratio: float, nodal_circles: int, n: int) -> FloatArray:
+def _ritz_roots(bore_ratio: float, poissons_ratio: float, nodal_circles: int, n: int) -> FloatArray:
     """Rayleigh-Ritz estimates of λ for 0, ..., nodal_circles, ascending, shape (nodal_circles + 1,).
 
     The trial functions are those with Legendre polynomials as second derivatives and clamped at the bore.
@@ -310,7 +417,7 @@ def _ritz_roots(bore_ratio: float, poisson_ratio: float, nodal_circles: int, n: 
     hoop = slope / x - n**2 * value / x**2
     twist = n * (slope / x - value / x**2)
     # Strain energy of bending over π D: (κ_r + κ_θ)² - 2 (1 - ν)(κ_r κ_θ - κ_rθ²).
-    nu = poisson_ratio
+    nu = poissons_ratio
     cross = (curvature * weights) @ hoop.T
     stiffness = (
         (curvature * weights) @ curvature.T

@@ -7,7 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import chebyshev
 
+from facegear.geometry import Drive
 from facegear.plate import (
+    Body,
     RadialModes,
     centrifugal_stiffness,
     centrifugal_stress,
@@ -16,52 +18,52 @@ from facegear.plate import (
 )
 
 bore_ratios = st.floats(0.05, 0.9)
-poisson_ratios = st.floats(0.0, 0.5)
+poissons_ratios = st.floats(0.0, 0.5)
 nodal_diameters = st.integers(0, 10)
 CORNERS = [(c, nu, n) for c in (0.05, 0.9) for nu in (0.0, 0.3, 0.5) for n in (0, 1, 2, 10)]
 
 
-def collocation_roots(c: float, nu: float, n: int, count: int, degree: int = 48) -> np.ndarray:
-    """λ from the strong form as four first-order equations, Chebyshev collocation in ln x.
+def collocation_roots(c: float, nu: float, n: int, count: int, degree: int = 52) -> np.ndarray:
+    """λ from the strong form as four first-order equations, Chebyshev collocation in s = ln x.
 
-    Unknowns R, S = dR/ds, L = x²∇²R and T = dL/ds with s = ln x, where x² ∇² = d²/ds² - n², so that
-    x⁴ ∇²(L/x²) = L'' - 4 L' + (4 - n²) L = λ⁴ x⁴ R.
+    With x² ∇² = d²/ds² - n² the unknowns are R, S = dR/ds, L = x²∇²R and T = dL/ds, and
+    x⁴ ∇²(L/x²) = L'' - 4 L' + (4 - n²) L = λ⁴ x⁴ R. A derivative is scaled with d, half the length in s.
     """
-    nodes = np.cos(np.pi * np.arange(degree + 1) / degree)
+    nodes = np.cos(np.pi * np.arange(degree + 1) / degree)  # the rim first, the bore last
     vandermonde = chebyshev.chebvander(nodes, degree)
     slopes = chebyshev.chebval(nodes, chebyshev.chebder(np.eye(degree + 1))).T
-    D = np.linalg.solve(vandermonde.T, slopes.T).T * (-2 / np.log(c))
-    x = np.exp((1 - nodes) / 2 * np.log(c))  # nodes[0] is the rim, nodes[-1] the bore
+    D = np.linalg.solve(vandermonde.T, slopes.T).T
+    d = -np.log(c) / 2
+    x = np.exp((nodes - 1) * d)
     size = degree + 1
     one, nil = np.eye(size), np.zeros((size, size))
     A = np.block(
         [
             [D, -one, nil, nil],
-            [-(n**2) * one, D, -one, nil],
+            [-((n * d) ** 2) * one, D, -one, nil],
             [nil, nil, D, -one],
-            [nil, nil, (4 - n**2) * one, D - 4 * one],
+            [nil, nil, (4 - n**2) * d**2 * one, D - 4 * d * one],
         ]
     )
     B = np.zeros_like(A)
-    B[3 * size :, :size] = np.diag(x**4)
+    B[3 * size :, :size] = np.diag((d * x) ** 4)
     # One boundary condition replaces one row of each equation's block: R = S = 0 at the bore, and at x = 1
     # R_xx = L - S + n² R, (∇²R)_x = T - 2 L.
-    rim = {name: k * size for k, name in enumerate("RSLT")}
-    for block, (end, row) in enumerate(
-        [
-            (-1, {"R": 1.0}),
-            (-1, {"S": 1.0}),
-            (0, {"L": 1.0, "S": nu - 1, "R": (1 - nu) * n**2}),
-            (0, {"T": 1.0, "L": -2.0, "S": -(1 - nu) * n**2, "R": (1 - nu) * n**2}),
-        ]
-    ):
-        index = block * size + (size - 1 if end == -1 else 0)
-        A[index], B[index] = 0, 0
-        for name, factor in row.items():
-            A[index, rim[name] + (size - 1 if end == -1 else 0)] = factor
+    R, S, L, T = range(4)
+    rim, bore = 0, size - 1
+    conditions = [
+        (bore, {R: 1.0}),
+        (bore, {S: 1.0}),
+        (rim, {L: 1.0, S: (nu - 1) * d, R: (1 - nu) * (n * d) ** 2}),
+        (rim, {T: 1.0, L: -2.0 * d, S: -(1 - nu) * (n * d) ** 2, R: (1 - nu) * n**2 * d**3}),
+    ]
+    for block, (edge, factors) in enumerate(conditions):
+        row = block * size + edge
+        A[row], B[row] = 0, 0
+        for unknown, factor in factors.items():
+            A[row, unknown * size + edge] = factor
     compliances = np.linalg.eigvals(np.linalg.solve(A, B))
-    largest = np.sort(compliances.real)[::-1][:count]
-    return largest**-0.25
+    return np.sort(compliances.real)[::-1][:count] ** -0.25
 
 
 def precise_determinant(c: float, nu: float, n: int, root: mpmath.mpf) -> mpmath.mpf:
@@ -128,12 +130,16 @@ class TestRoots:
     @pytest.mark.parametrize(("c", "nu", "n"), CORNERS)
     def test_collocation_at_the_corners(self, c, nu, n):
         # All five roots in order: a missed or doubled root would shift the rest.
-        np.testing.assert_allclose(radial_modes(c, nu, 4, n).roots, collocation_roots(c, nu, n, 5), rtol=2e-9)
+        np.testing.assert_allclose(
+            radial_modes(c, nu, 4, n).roots, collocation_roots(c, nu, n, 5), rtol=5e-10
+        )
 
-    @given(bore_ratios, poisson_ratios, nodal_diameters)
+    @given(bore_ratios, poissons_ratios, nodal_diameters)
     @settings(deadline=None, derandomize=True, max_examples=40)
     def test_collocation_anywhere(self, c, nu, n):
-        np.testing.assert_allclose(radial_modes(c, nu, 4, n).roots, collocation_roots(c, nu, n, 5), rtol=2e-9)
+        np.testing.assert_allclose(
+            radial_modes(c, nu, 4, n).roots, collocation_roots(c, nu, n, 5), rtol=5e-10
+        )
 
     @pytest.mark.parametrize(
         ("c", "nu", "n", "m"), [(0.05, 0.5, 10, 4), (0.05, 0.0, 1, 0), (0.9, 0.0, 10, 4), (0.9, 0.5, 0, 0)]
@@ -149,7 +155,7 @@ class TestRoots:
 
 
 class TestModeFunctions:
-    @given(bore_ratios, poisson_ratios, nodal_diameters)
+    @given(bore_ratios, poissons_ratios, nodal_diameters)
     @settings(deadline=None, derandomize=True, max_examples=60)
     def test_orthonormal(self, c, nu, n):
         # A quadrature of its own, finer than the module's and graded towards the bore.
@@ -162,7 +168,7 @@ class TestModeFunctions:
         np.testing.assert_allclose(gram, np.eye(5), atol=1e-10)
         assert np.all(modes(1.0) > 0)
 
-    @given(bore_ratios, poisson_ratios, nodal_diameters)
+    @given(bore_ratios, poissons_ratios, nodal_diameters)
     @settings(deadline=None, derandomize=True, max_examples=60)
     def test_nodal_circles_are_counted(self, c, nu, n):
         x = np.linspace(c, 1, 401)[1:]
@@ -203,7 +209,7 @@ class TestModeFunctions:
             )
             assert abs(shear) < 1e-4 * root**3 * size
 
-    @given(bore_ratios, poisson_ratios, nodal_diameters)
+    @given(bore_ratios, poissons_ratios, nodal_diameters)
     @settings(deadline=None, derandomize=True, max_examples=30)
     def test_derivatives(self, c, nu, n):
         modes = radial_modes(c, nu, 2, n)
@@ -231,16 +237,24 @@ class TestModeFunctions:
             ((0.04, 0.3, 1, 1), "bore_ratio"),
             ((0.91, 0.3, 1, 1), "bore_ratio"),
             ((float("nan"), 0.3, 1, 1), "bore_ratio"),
-            ((0.5, 0.51, 1, 1), "poisson_ratio"),
-            ((0.5, -0.1, 1, 1), "poisson_ratio"),
+            ((0.5, 0.51, 1, 1), "poissons_ratio"),
+            ((0.5, -0.1, 1, 1), "poissons_ratio"),
             ((0.5, 0.3, 5, 1), "nodal_circles"),
-            ((0.5, 0.3, 1.5, 1), "nodal_circles"),
+            ((0.5, 0.3, -1, 1), "nodal_circles"),
             ((0.5, 0.3, 1, 11), "nodal_diameters"),
             ((0.5, 0.3, 1, -1), "nodal_diameters"),
         ],
     )
     def test_arguments_out_of_range(self, arguments, name):
         with pytest.raises(ValueError, match=name):
+            radial_modes(*arguments)
+
+    @pytest.mark.parametrize(
+        ("arguments", "name"),
+        [((0.5, 0.3, 1.0, 1), "nodal_circles"), ((0.5, 0.3, 1, True), "nodal_diameters")],
+    )
+    def test_counts_are_integers(self, arguments, name):
+        with pytest.raises(TypeError, match=name):
             radial_modes(*arguments)
 
     @pytest.mark.parametrize("x", [0.2, 1.01, float("nan")])
@@ -254,7 +268,7 @@ class TestModeFunctions:
 
 
 class TestCentrifugalStress:
-    @given(bore_ratios, poisson_ratios)
+    @given(bore_ratios, poissons_ratios)
     @settings(deadline=None, derandomize=True)
     def test_equilibrium_compatibility_and_edges(self, c, nu):
         # In s = ln x, where x d/dx = d/ds and the stresses are entire.
@@ -287,7 +301,7 @@ class TestCentrifugalStress:
         expected = [[quad(integrand, 0.2, 1, (i, j), epsabs=1e-11)[0] for j in range(3)] for i in range(3)]
         np.testing.assert_allclose(centrifugal_stiffness(modes), expected, rtol=1e-10, atol=1e-10)
 
-    @given(bore_ratios, poisson_ratios, nodal_diameters)
+    @given(bore_ratios, poissons_ratios, nodal_diameters)
     @settings(deadline=None, derandomize=True, max_examples=40)
     def test_stiffness_matrix_is_symmetric_and_stiffens(self, c, nu, n):
         matrix = centrifugal_stiffness(radial_modes(c, nu, 2, n))
@@ -306,3 +320,53 @@ def test_modes_of_equal_arguments_are_shared():
     first = radial_modes(0.25, 0.3, 1, 3)
     assert isinstance(first, RadialModes)
     assert radial_modes(0.25, 0.3, 1, 3) is first
+
+
+class TestBody:
+    drive = Drive(26, 130, 3.175e-3)
+
+    def test_dimensions_of_case_one(self):
+        # Tables 4.2 and 4.3; a = 231.94 mm is printed for 26/130.
+        body = Body(self.drive, 0.03)
+        assert body.outer_radius == pytest.approx(0.23194, abs=5e-6)
+        assert body.thickness == 0.03 * body.outer_radius
+        assert body.bore_ratio == 0.05 / body.outer_radius
+        assert body.mass == pytest.approx(7840 * np.pi * (0.231939**2 - 0.05**2) * 0.03 * 0.231939, rel=1e-5)
+        assert body.bending_stiffness == pytest.approx(200e9 * body.thickness**3 / 10.92, rel=1e-14)
+
+    def test_natural_frequencies(self):
+        body = Body(self.drive, 0.03, nodal_circles=2, nodal_diameters=4)
+        frequencies = body.natural_frequencies()
+        assert frequencies.shape == (3, 5)
+        a, h = body.outer_radius, body.thickness
+        wave_speed = np.sqrt(200e9 * h**2 / (12 * (1 - 0.3**2) * 7840))
+        for n in range(5):
+            roots = collocation_roots(body.bore_ratio, 0.3, n, 3)
+            np.testing.assert_allclose(
+                frequencies[:, n], roots**2 * wave_speed / (2 * np.pi * a**2), rtol=1e-9
+            )
+
+    @given(st.floats(0.002, 0.05), st.floats(1.1, 3.0))
+    @settings(deadline=None, derandomize=True, max_examples=20)
+    def test_frequencies_grow_with_the_thickness(self, thickness_ratio, factor):
+        thin, thick = (Body(self.drive, thickness_ratio * f).natural_frequencies() for f in (1.0, factor))
+        np.testing.assert_allclose(thick, factor * thin, rtol=1e-12)
+
+    @pytest.mark.parametrize(
+        ("change", "error", "message"),
+        [
+            ({"drive": "26/130"}, TypeError, "drive must be a Drive"),
+            ({"material": 7840.0}, TypeError, "material must be a Material"),
+            ({"thickness_ratio": 0.0}, ValueError, "thickness_ratio"),
+            ({"thickness_ratio": float("nan")}, ValueError, "thickness_ratio"),
+            ({"thickness_ratio": 3.0}, ValueError, "thickness_ratio"),
+            ({"bore_radius": 50.0}, ValueError, "bore_radius=0.05 would be valid"),
+            ({"bore_radius": 0.005}, ValueError, "bore_radius"),
+            ({"bore_radius": 0.19}, ValueError, "bore_radius must be smaller than the inner radius"),
+            ({"nodal_circles": 5}, ValueError, "nodal_circles"),
+            ({"nodal_diameters": 2.0}, TypeError, "nodal_diameters"),
+        ],
+    )
+    def test_bad_input(self, change, error, message):
+        with pytest.raises(error, match=message):
+            Body(**({"drive": self.drive, "thickness_ratio": 0.03} | change))
