@@ -1,1 +1,41 @@
-"""Stability of face-gear drives."""
+"""Parametric stability of face-gear drives: meshing kinematics, Floquet maps, stability-based design.
+
+Public names are loaded on first use (PEP 562), so that `import facegear` itself costs next to nothing.
+"""
+
+from importlib import import_module
+from typing import Any
+
+# Public name -> module that defines it.
+_PUBLIC = {
+    # parameters
+    "STEEL": "parameters",
+    "Material": "parameters",
+    "MeshLoad": "parameters",
+    "rad_per_s": "parameters",
+    "rpm": "parameters",
+    "watt": "parameters",
+    # geometry
+    "ContactLines": "geometry",
+    "Drive": "geometry",
+    "ToothFlank": "geometry",
+    # kinematics
+    "ContactPath": "kinematics",
+    "SkewLine": "kinematics",
+    "mesh_period": "kinematics",
+    "phase_split": "kinematics",
+}
+
+__all__ = sorted(_PUBLIC)  # noqa: PLE0605
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PUBLIC:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_PUBLIC[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_PUBLIC})

@@ -1,0 +1,1 @@
+"""SymPy derivations, one module a subject; nothing is derived at import."""

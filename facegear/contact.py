@@ -1,0 +1,257 @@
+"""Contact lines of a face-gear tooth as plain numbers: where they end, how long they are, where their middle is.
+
+A point of the tooth flank is named by two angles: the roll angle θs of the involute (3-2) and the local pressure
+angle α = φs + θ0s + θs, which (3-7) ties to the position along the shaper's axis, u_s = r_bs cot γs / cos α. At
+a rotation φs the contact line is the straight line θs = α − c in the (α, θs) plane, with c = φs + θ0s. It lies
+between four edges of the face-gear tooth and two circles of the pinion:
+
+- inner and outer edge: the planes −y_p = R1 and −y_p = R2 normal to the gear plane's radius at the pinion, which
+  for γ = 90° are u_s = L1 and u_s = L2;
+- tooth top of the face gear: the cone about the face gear's axis whose generator in the plane of both axes is
+  parallel to the shaper's axis, one addendum short of the pitch radius away. For γ = 90° it is the plane
+  at that distance below the shaper's axis;
+- tip circle of the pinion θs = θa, and its base circle θs = 0, below which there is no involute.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+from scipy.optimize.elementwise import find_root
+
+from facegear.parameters import FloatArray
+from facegear.symbolic import meshing
+
+# No flank reaches a local pressure angle near 90°: u_s would be infinite there.
+_STEEPEST = 1.5
+# Gauss–Legendre on [0, 1]: 24 nodes leave nothing of a smooth integrand over a fraction of a radian.
+_NODES, _WEIGHTS = (array.astype(np.float64) for array in np.polynomial.legendre.leggauss(24))
+_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
+
+
+def root(function: Callable[[float], float], lower: float, upper: float) -> float:
+    """Root of a scalar function between two arguments of opposite sign, to the last digit."""
+    return float(brentq(function, lower, upper, xtol=1e-16, rtol=8.9e-16))
+
+
+def crossing(
+    function: Callable[..., FloatArray], lower: ArrayLike, upper: ArrayLike, *arguments: ArrayLike
+) -> FloatArray:
+    """Where an increasing function crosses zero between two arguments, elementwise, to the last digit.
+
+    Where it is positive throughout the lower end is the answer, where negative throughout the upper one.
+    """
+    low, high, *rest = np.broadcast_arrays(lower, upper, *arguments)
+    above = function(low, *rest) >= 0.0
+    below = function(high, *rest) <= 0.0
+    inside = ~(above | below)
+    result = np.where(above, low, high).astype(np.float64)
+    if np.any(inside):
+        ends = (low[inside], high[inside])
+        found = find_root(function, ends, args=tuple(argument[inside] for argument in rest))
+        if not np.all(found.success):
+            raise RuntimeError(f"root search stopped early, status {np.unique(found.status).tolist()}")
+        result[inside] = found.x
+    return result
+
+
+@dataclass(frozen=True)
+class ContactRegion:
+    """The part of the (α, θs) plane where pinion and face-gear tooth touch during a mesh cycle.
+
+    Parameters
+    ----------
+    base_radius : float
+        r_bs [m].
+    gear_ratio : float
+        m_2s.
+    shaft_angle : float
+        γ [rad].
+    inner_radius, outer_radius : float
+        R1 and R2 on the gear plane [m].
+    tooth_top_distance : float
+        r_p − a_g [m].
+    tip_roll : float
+        θ_a, roll angle at the pinion's tip circle [rad].
+    """
+
+    base_radius: float
+    gear_ratio: float
+    shaft_angle: float
+    inner_radius: float
+    outer_radius: float
+    tooth_top_distance: float
+    tip_roll: float
+
+    # --- one point --------------------------------------------------------------------------------------------
+
+    def point(self, alpha: ArrayLike, roll: ArrayLike) -> FloatArray:
+        """Contact point in the space-fixed Γp, shape (..., 3) [m], from α and θs [rad]."""
+        s = meshing
+        function = s.compiled(s.contact_point, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
+        components = function(alpha, roll, self.base_radius, self.gear_ratio, self.shaft_angle)
+        return np.stack(np.broadcast_arrays(*components), axis=-1)
+
+    def radial_position(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
+        """−y_p [m], along the gear plane in the plane of both axes."""
+        return -self._components(alpha, roll)[1]
+
+    def _components(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
+        s = meshing
+        function = s.compiled(s.contact_point, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
+        return function(alpha, roll, self.base_radius, self.gear_ratio, self.shaft_angle)
+
+    def depth(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
+        """Distance from the shaper's axis of the cone through a point that is parallel to the tooth top [m].
+
+        The face gear's tooth lies where this is at least r_p − a_g. For γ = 90° it is −z_p.
+        """
+        x, y, z = self._components(alpha, roll)
+        return -z * math.sin(self.shaft_angle) - np.hypot(x, y) * math.cos(self.shaft_angle)
+
+    def line_speed(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
+        """Arc length of the contact line per local pressure angle at constant φs [m]."""
+        s = meshing
+        function = s.compiled(s.contact_line_speed, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
+        return function(alpha, roll, self.base_radius, self.gear_ratio, self.shaft_angle)
+
+    # --- corners ----------------------------------------------------------------------------------------------
+
+    def edge_angle(self, radius: float, roll: float) -> float:
+        """Local pressure angle at −y_p = `radius` on the profile point `roll` [rad]."""
+        # Next to the root of the tooth −y_p may fall with α before it rises: the branch in use is the rising one.
+        lowest = self._lowest_angle(roll)
+        return root(lambda alpha: float(self.radial_position(alpha, roll)) - radius, lowest, _STEEPEST)
+
+    def _lowest_angle(self, roll: float) -> float:
+        """Where −y_p is least at constant θs: cot γs sin α / cos² α = cot γ (θs cos α − sin α)."""
+        cotangent = 1.0 / math.tan(self.shaft_angle)
+        cone = (1.0 + self.gear_ratio * math.cos(self.shaft_angle)) / (
+            self.gear_ratio * math.sin(self.shaft_angle)
+        )
+
+        def slope(alpha: float) -> float:
+            fall = cotangent * (roll * math.cos(alpha) - math.sin(alpha))
+            return cone * math.sin(alpha) / math.cos(alpha) ** 2 - fall
+
+        return root(slope, 0.0, _STEEPEST) if slope(0.0) < 0.0 else 0.0
+
+    def top_roll(self, radius: float) -> float:
+        """Roll angle of the tooth top at −y_p = `radius` [rad]; 0 where the base circle comes first."""
+
+        def excess(roll: float) -> float:
+            return float(self.depth(self.edge_angle(radius, roll), roll)) - self.tooth_top_distance
+
+        return root(excess, 0.0, 2.0) if excess(0.0) < 0.0 else 0.0
+
+    def _top_angle(self, roll: float) -> float:
+        """Local pressure angle of the tooth top on the profile point `roll` > 0, on its rising branch [rad]."""
+
+        def excess(alpha: float) -> float:
+            return float(self.depth(alpha, roll)) - self.tooth_top_distance
+
+        return root(excess, 0.0, math.atan(roll))
+
+    @cached_property
+    def entry(self) -> float:
+        """C = φ_in + θ0s, first contact: the outer edge meets the tooth top [rad]."""
+        roll = self.top_roll(self.outer_radius)
+        if roll >= self.tip_roll:
+            raise ValueError(
+                f"outer_radius={self.outer_radius:.6g} m is out of the pinion's reach: the tooth top lies at a "
+                f"roll angle of {roll:.4g} rad there, the pinion's tip at {self.tip_roll:.4g} rad"
+            )
+        return self.edge_angle(self.outer_radius, roll) - roll
+
+    @cached_property
+    def _exit_at_inner_edge(self) -> bool:
+        """Whether the pinion's tip reaches the inner edge below the tooth top."""
+        return self.top_roll(self.inner_radius) < self.tip_roll
+
+    @cached_property
+    def exit(self) -> float:
+        """C = φ_out + θ0s, last contact [rad].
+
+        The pinion's tip leaves at the inner edge, or, with many teeth, where it leaves the tooth top before.
+        """
+        if self._exit_at_inner_edge:
+            return self.edge_angle(self.inner_radius, self.tip_roll) - self.tip_roll
+        return self._top_angle(self.tip_roll) - self.tip_roll
+
+    @cached_property
+    def kinks(self) -> tuple[float, ...]:
+        """C between entry and exit where an end of the contact line changes edge, descending [rad]."""
+        changes = [self.edge_angle(self.outer_radius, self.tip_roll) - self.tip_roll]
+        if self._exit_at_inner_edge:
+            roll = self.top_roll(self.inner_radius)
+            changes.append(self.edge_angle(self.inner_radius, roll) - roll)
+            if roll == 0.0:
+                # The base circle comes between tooth top and inner edge.
+                changes.append(self._base_angle())
+        return tuple(sorted((c for c in changes if self.exit < c < self.entry), reverse=True))
+
+    def _base_angle(self) -> float:
+        """Local pressure angle where the tooth top reaches the base circle θs = 0 [rad]."""
+
+        def excess(alpha: float) -> float:
+            return self.tooth_top_distance - float(self.depth(alpha, 0.0))
+
+        return root(excess, 0.0, _STEEPEST)
+
+    # --- whole lines ------------------------------------------------------------------------------------------
+
+    def line_ends(self, c: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Local pressure angles at the two ends of the contact lines, each of the shape of `c` [rad].
+
+        Along a line −y_p and the depth both grow with α, so that every edge cuts off one end.
+        """
+        offset = np.asarray(c, dtype=np.float64)
+        tip = offset + self.tip_roll
+        # α < 0 is the branch of the meshing surface beyond the undercut.
+        lowest = np.maximum(offset, 0.0)
+
+        def above_top(alpha: FloatArray, line: FloatArray) -> FloatArray:
+            return np.asarray(self.depth(alpha, alpha - line) - self.tooth_top_distance)
+
+        def outside(alpha: FloatArray, line: FloatArray, radius: FloatArray) -> FloatArray:
+            return np.asarray(self.radial_position(alpha, alpha - line) - radius)
+
+        below_top = crossing(above_top, lowest, tip, offset)
+        lower = crossing(outside, below_top, tip, offset, self.inner_radius)
+        upper = crossing(outside, below_top, tip, offset, self.outer_radius)
+        return lower, np.maximum(lower, upper)
+
+    def length(self, c: ArrayLike, lower: FloatArray, upper: FloatArray) -> FloatArray:
+        """Arc length of contact lines between two local pressure angles [m], shape of `c`."""
+        return (upper - lower) * self._part(
+            np.asarray(c, dtype=np.float64), lower, upper, np.ones_like(lower)
+        )
+
+    def _part(self, c: FloatArray, lower: FloatArray, upper: FloatArray, end: FloatArray) -> FloatArray:
+        """Integral of the line speed over the fraction 0 … `end` of the interval."""
+        alpha = (lower + (upper - lower) * end)[..., None] * _NODES + lower[..., None] * (1.0 - _NODES)
+        speed = self.line_speed(alpha, alpha - c[..., None])
+        return end * np.asarray(speed @ _WEIGHTS)
+
+    def middle(self, c: ArrayLike, lower: FloatArray, upper: FloatArray) -> FloatArray:
+        """Local pressure angle of the point halfway along contact lines by arc length [rad], shape of `c`."""
+        offset = np.asarray(c, dtype=np.float64)
+        half = 0.5 * self._part(offset, lower, upper, np.ones_like(lower))
+        fraction = np.full(lower.shape, 0.5)
+        # The integrand is positive and varies slowly: Newton's rule converges at once, also on zero length.
+        for _ in range(20):
+            alpha = lower + (upper - lower) * fraction
+            step = (self._part(offset, lower, upper, fraction) - half) / self.line_speed(
+                alpha, alpha - offset
+            )
+            fraction = fraction - step
+            if np.all(np.abs(step) < 1e-15):
+                break
+        else:
+            raise RuntimeError(f"midpoint search did not settle: last step {np.max(np.abs(step)):.3g}")
+        return lower + (upper - lower) * fraction
