@@ -5,6 +5,7 @@ functions below, so that one wrong number ends in one sentence that names the pa
 """
 
 import math
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Any
@@ -147,6 +148,74 @@ def finite_array(name: str, values: ArrayLike, unit: str = "") -> FloatArray:
         bad = array[~np.isfinite(array)].flat[0]
         raise ValueError(f"{name} must be finite{_in(unit)}, got an entry {bad!r}")
     return array.astype(np.float64)
+
+
+def known_keys(
+    name: str, value: Any, required: Collection[str], optional: Collection[str] = ()
+) -> dict[str, Any]:
+    """Check that `value` is a mapping with every required key and no unknown one, and return it as a dict.
+
+    Parameters
+    ----------
+    name : str
+        Name of the mapping, for the message.
+    value : object
+        What was read.
+    required, optional : collection of str
+        Keys that must, and that may, be there.
+
+    Raises
+    ------
+    TypeError
+        Not a mapping.
+    ValueError
+        A key is missing or unknown.
+    """
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name} must be a mapping with the keys {', '.join(required)}, got {value!r}")
+    missing = [key for key in required if key not in value]
+    unknown = [str(key) for key in value if key not in {*required, *optional}]
+    if missing or unknown:
+        faults = [f"missing {', '.join(missing)}"] * bool(missing) + [f"unknown {', '.join(unknown)}"] * bool(
+            unknown
+        )
+        raise ValueError(
+            f"{name} must have the keys {', '.join((*required, *optional))}: {' and '.join(faults)}"
+        )
+    return dict(value)
+
+
+def check_mapping_keys(
+    name: str, content: Any, required: Iterable[str], optional: Iterable[str] = ()
+) -> None:
+    """Check that `content`, usually read from a file, is a mapping with the keys it should have.
+
+    Parameters
+    ----------
+    name : str
+        What the mapping is, for the message.
+    content : object
+        What was read.
+    required, optional : iterable of str
+        Keys that must be there, and that may be.
+
+    Raises
+    ------
+    TypeError
+        Not a mapping.
+    ValueError
+        A required key is missing, or a key is unknown.
+    """
+    needed, allowed = set(required), set(optional)
+    if not isinstance(content, Mapping):
+        raise TypeError(f"{name} must be a mapping with the keys {', '.join(sorted(needed))}, got {content!r}")
+    missing = needed - content.keys()
+    if missing:
+        raise ValueError(f"{name} lacks the keys {', '.join(sorted(missing))}")
+    unknown = {str(key) for key in content.keys() - needed - allowed}
+    if unknown:
+        valid = ", ".join(sorted(needed | allowed))
+        raise ValueError(f"{name} has the unknown keys {', '.join(sorted(unknown))}; valid are {valid}")
 
 
 def rad_per_s(speed_rpm: ArrayLike) -> Any:
