@@ -185,39 +185,6 @@ def known_keys(
     return dict(value)
 
 
-def check_mapping_keys(
-    name: str, content: Any, required: Iterable[str], optional: Iterable[str] = ()
-) -> None:
-    """Check that `content`, usually read from a file, is a mapping with the keys it should have.
-
-    Parameters
-    ----------
-    name : str
-        What the mapping is, for the message.
-    content : object
-        What was read.
-    required, optional : iterable of str
-        Keys that must be there, and that may be.
-
-    Raises
-    ------
-    TypeError
-        Not a mapping.
-    ValueError
-        A required key is missing, or a key is unknown.
-    """
-    needed, allowed = set(required), set(optional)
-    if not isinstance(content, Mapping):
-        raise TypeError(f"{name} must be a mapping with the keys {', '.join(sorted(needed))}, got {content!r}")
-    missing = needed - content.keys()
-    if missing:
-        raise ValueError(f"{name} lacks the keys {', '.join(sorted(missing))}")
-    unknown = {str(key) for key in content.keys() - needed - allowed}
-    if unknown:
-        valid = ", ".join(sorted(needed | allowed))
-        raise ValueError(f"{name} has the unknown keys {', '.join(sorted(unknown))}; valid are {valid}")
-
-
 def rad_per_s(speed_rpm: ArrayLike) -> Any:
     """Convert revolutions per minute to rad/s; a number gives a number, an array an array."""
     return np.multiply(speed_rpm, math.pi / 30.0)[()]
