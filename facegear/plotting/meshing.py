@@ -1,0 +1,386 @@
+"""Figures of chapter 3 that show data: tooth, contact lines, contact points, contact ratios."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+from facegear.plotting.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    VERMILION,
+    WIDTH,
+    label_line,
+    panels,
+    styled,
+)
+
+_MM = 1e3
+_SWEEP = mpl.colormaps["cividis"]
+
+
+def _axes_3d(figure: Figure, position: Any = 111) -> Axes3D:
+    axes: Axes3D = figure.add_subplot(position, projection="3d")
+    axes.set_facecolor("none")
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.pane.set_visible(False)
+        axis._axinfo["grid"].update(linewidth=0.4, color=FAINT)
+    return axes
+
+
+def _draw_tooth(axes: Axes3D, tooth: xr.Dataset) -> None:
+    """Both flanks in the gear's own frame: x across the tooth, y outwards along it, z up [mm]."""
+    for flank in tooth.flank:
+        points = tooth["surface"].sel(flank=flank).values * _MM
+        axes.plot_surface(
+            points[..., 0],
+            -points[..., 1],
+            points[..., 2],
+            color="#B8C4CE",
+            alpha=0.55,
+            linewidth=0,
+            shade=True,
+        )
+        for edge in (points[:, 0], points[:, -1], points[0], points[-1]):
+            axes.plot(edge[:, 0], -edge[:, 1], edge[:, 2], color=GREY, linewidth=0.7)
+    axes.set_xlabel("across tooth [mm]")
+    axes.set_ylabel("radial [mm]", labelpad=12)
+    axes.set_zlabel("axial [mm]")
+    axes.set_box_aspect((1.1, 3.0, 1.1))
+    axes.view_init(elev=24, azim=-38)
+
+
+def _draw_lines(axes: Axes3D, tooth: xr.Dataset) -> None:
+    count = tooth.sizes["rotation"]
+    for k in range(count):
+        line = tooth["line"].isel(rotation=k).values * _MM
+        axes.plot(line[:, 0], -line[:, 1], line[:, 2], color=_SWEEP(k / (count - 1)), linewidth=1.6)
+
+
+@styled
+def tooth_and_contact_lines(tooth: xr.Dataset) -> Figure:
+    """Figure 3.5: generated tooth with its contact lines, coloured from first contact (dark) to last (light).
+
+    Parameters
+    ----------
+    tooth : xarray.Dataset
+        ``surface`` (flank, profile, along, axis) and ``line`` (rotation, point, axis) in the gear's frame [m].
+    """
+    figure = Figure(figsize=(WIDTH, 4.6))
+    figure.subplots_adjust(left=0.0, right=0.93, bottom=0.02, top=1.05)
+    axes = _axes_3d(figure)
+    _draw_tooth(axes, tooth)
+    _draw_lines(axes, tooth)
+    _sweep_bar(figure, axes)
+    return figure
+
+
+def _sweep_bar(figure: Figure, axes: Any) -> None:
+    scale = mpl.cm.ScalarMappable(mpl.colors.Normalize(0, 1), _SWEEP)
+    bar = figure.colorbar(scale, ax=axes, shrink=0.55, pad=0.04, ticks=[0, 1])
+    bar.ax.set_yticklabels(["first\ncontact", "last\ncontact"])
+
+
+@styled
+def contact_points(tooth: xr.Dataset) -> Figure:
+    """Figure 3.8: midpoints of the contact lines on the tooth, in space and from the side.
+
+    Parameters
+    ----------
+    tooth : xarray.Dataset
+        As for :func:`tooth_and_contact_lines`, with ``midpoint`` (rotation, axis) [m].
+    """
+    figure = Figure(figsize=(WIDTH, 7.0))
+    grid = figure.add_gridspec(
+        2, 1, height_ratios=(1.6, 1), left=0.12, right=0.95, bottom=0.09, top=1.02, hspace=0.1
+    )
+    space = _axes_3d(figure, grid[0])
+    _draw_tooth(space, tooth)
+    _draw_lines(space, tooth)
+    midpoints = tooth["midpoint"].values * _MM
+    space.plot(
+        midpoints[:, 0], -midpoints[:, 1], midpoints[:, 2], "x", color=VERMILION, markersize=5, zorder=9
+    )
+    space.set_title("(a) in space", loc="left", y=0.9)
+    side = figure.add_subplot(grid[1])
+    outline = tooth["surface"].isel(flank=0).values * _MM
+    for edge in (outline[:, 0], outline[:, -1], outline[0], outline[-1]):
+        side.plot(-edge[:, 1], edge[:, 2], color=GREY, linewidth=0.8)
+    count = tooth.sizes["rotation"]
+    for k in range(count):
+        line = tooth["line"].isel(rotation=k).values * _MM
+        side.plot(-line[:, 1], line[:, 2], color=_SWEEP(k / (count - 1)))
+    side.plot(
+        -midpoints[:, 1], midpoints[:, 2], "x", color=VERMILION, markersize=5, label="contact point", zorder=5
+    )
+    side.set(xlabel="distance from the face gear's axis [mm]", ylabel="axial [mm]")
+    side.set_title("(b) from the side", loc="left")
+    side.legend(loc="lower right")
+    return figure
+
+
+def _plot_pair(axes: Axes, x: Any, y: Any, k: int, **options: Any) -> None:
+    colours = (BLUE, VERMILION, GREEN, ORANGE)
+    axes.plot(x, y, color=colours[k % 4], **options)
+
+
+@styled
+def contact_point_positions(paths: xr.Dataset) -> Figure:
+    """Figure 3.9: radial and circumferential position of the contact points of successive tooth pairs.
+
+    Parameters
+    ----------
+    paths : xarray.Dataset
+        ``radius`` [m] and ``angle`` [rad] over (pair, fraction); NaN where a pair is not in mesh.
+    """
+    figure, axes = panels(2, 1, 5.4, sharex=True)
+    for k in range(paths.sizes["pair"]):
+        path = paths.isel(pair=k)
+        _plot_pair(axes[0], path.fraction, path.radius * _MM, k, label=f"pair {k + 1}")
+        _plot_pair(axes[1], path.fraction, np.degrees(path.angle), k)
+    axes[0].set_ylabel("radius $r_i$ [mm]")
+    axes[1].set_ylabel(r"angle $\theta_i$ [degree]")
+    axes[1].set_xlabel(r"rotation of the face gear over its angular pitch, $t/T_0$")
+    for name, at in zip("ABC", paths.attrs["instants"], strict=True):
+        for panel in axes:
+            panel.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)))
+        axes[0].annotate(name, (at, 1.0), xycoords=("data", "axes fraction"), ha="center", va="bottom")
+    axes[0].legend(ncols=4, loc="lower center", bbox_to_anchor=(0.5, 1.06))
+    return figure
+
+
+@styled
+def contact_centroid_sketch(instants: xr.Dataset) -> Figure:
+    """Figures 3.10 and 3.11: contact lines, contact points and their centroid on the gear plane at chosen instants.
+
+    Parameters
+    ----------
+    instants : xarray.Dataset
+        Over (instant, pair): ``line_across``, ``line_radial`` (with point) [m], ``point_across``, ``point_radial``,
+        ``length`` [m]; over instant ``centroid_across``, ``centroid_radial`` [m].
+    """
+    figure, axes = panels(1, instants.sizes["instant"], 4.6, sharey=True)
+    for k, panel in enumerate(axes):
+        shown = instants.isel(instant=k)
+        for j in range(shown.sizes["pair"]):
+            pair = shown.isel(pair=j)
+            if not np.isfinite(float(pair.length)):
+                continue
+            _plot_pair(panel, pair.line_across * _MM, pair.line_radial * _MM, j, linewidth=2.2)
+            panel.plot(
+                float(pair.point_across) * _MM, float(pair.point_radial) * _MM, "x", color=INK, markersize=8
+            )
+            label_line(
+                panel,
+                f"$l_{j + 1}$ = {float(pair.length) * _MM:.1f} mm",
+                (float(pair.point_across) * _MM, float(pair.point_radial) * _MM),
+                (14, 10),
+            )
+        panel.plot(
+            float(shown.centroid_across) * _MM,
+            float(shown.centroid_radial) * _MM,
+            "o",
+            color=INK,
+            markerfacecolor="none",
+            markersize=12,
+            markeredgewidth=1.6,
+            label="contact centroid",
+        )
+        panel.set_title(f"({'ab'[k]}) $t/T_0$ = {float(shown.instant):.2f}", loc="left")
+        panel.set_xlabel("across [mm]")
+        panel.margins(x=0.35, y=0.1)
+    axes[0].set_ylabel("radial [mm]")
+    axes[-1].legend(loc="lower right")
+    return figure
+
+
+@styled
+def contact_centroid_positions(motion: xr.Dataset) -> Figure:
+    """Figure 3.12: contact points and contact centroid over two mesh periods.
+
+    Parameters
+    ----------
+    motion : xarray.Dataset
+        ``radius`` [m], ``angle`` [rad] over (pair, fraction), NaN where not in mesh; ``centroid_radius``,
+        ``centroid_angle`` over fraction.
+    """
+    figure, axes = panels(2, 1, 5.6, sharex=True)
+    for k in range(motion.sizes["pair"]):
+        pair = motion.isel(pair=k)
+        label = "contact points" if k == 0 else None
+        axes[0].plot(pair.fraction, pair.radius * _MM, color=GREY, linestyle=(0, (5, 2)), label=label)
+        axes[1].plot(pair.fraction, np.degrees(pair.angle), color=GREY, linestyle=(0, (5, 2)))
+    axes[0].plot(
+        motion.fraction,
+        motion.centroid_radius * _MM,
+        color=VERMILION,
+        linewidth=2.2,
+        label="contact centroid",
+    )
+    axes[1].plot(motion.fraction, np.degrees(motion.centroid_angle), color=VERMILION, linewidth=2.2)
+    axes[0].set_ylabel("radius [mm]")
+    axes[1].set_ylabel("angle [degree]")
+    axes[1].set_xlabel("$t/T_0$")
+    axes[0].set_title("(a) radial position", loc="left")
+    axes[1].set_title("(b) circumferential position", loc="left")
+    axes[0].legend(ncols=2, loc="lower right", bbox_to_anchor=(1.0, 1.0))
+    return figure
+
+
+@styled
+def skew_lines(lines: xr.Dataset) -> Figure:
+    """Figure 3.13: the skew line that stands for the path of the contact points in the torsional model.
+
+    Parameters
+    ----------
+    lines : xarray.Dataset
+        ``radius`` and ``skew_radius`` [m] over (pair, fraction), NaN where not in mesh.
+    """
+    figure, (axes,) = panels(1, 1, 3.6)
+    for k in range(lines.sizes["pair"]):
+        pair = lines.isel(pair=k)
+        axes.plot(
+            pair.fraction,
+            pair.radius * _MM,
+            color=GREY,
+            linestyle=(0, (5, 2)),
+            label="contact points" if k == 0 else None,
+        )
+        _plot_pair(axes, pair.fraction, pair.skew_radius * _MM, k, label=f"skew line, pair {k + 1}")
+    axes.set(xlabel="$t/T_0$", ylabel="radius [mm]")
+    axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2, handlelength=1.6)
+    return figure
+
+
+@styled
+def contact_ratio_after_tregold(ratios: xr.Dataset) -> Figure:
+    """Figure 4.3: contact ratio after Tregold against the number of pinion teeth.
+
+    Parameters
+    ----------
+    ratios : xarray.Dataset
+        ``contact_ratio`` over ``pinion_teeth``; attribute ``marked``: tooth numbers to mark.
+    """
+    figure, (axes,) = panels(1, 1, 3.6)
+    axes.plot(ratios.pinion_teeth, ratios.contact_ratio, "o-", markersize=4)
+    marked = ratios.sel(pinion_teeth=list(ratios.attrs["marked"]))
+    axes.plot(
+        marked.pinion_teeth, marked.contact_ratio, "o", color=VERMILION, markersize=8, markerfacecolor="none"
+    )
+    for teeth, ratio in zip(marked.pinion_teeth.values, marked.contact_ratio.values, strict=True):
+        label_line(axes, f"{ratio:.4f}", (teeth, ratio), (6, -22))
+    axes.set(xlabel="number of pinion teeth $N_1$", ylabel="contact ratio $c_r$")
+    return figure
+
+
+@styled
+def contact_ratios_compared(ratios: xr.Dataset) -> Figure:
+    """Tregold's contact ratio beside that of the true sweep, and the pairs in mesh that each implies.
+
+    Parameters
+    ----------
+    ratios : xarray.Dataset
+        ``contact_ratio``, ``geometric_contact_ratio`` over ``pinion_teeth``; ``total_length`` [m] and
+        ``total_length_geometric`` [m] over ``fraction``.
+    """
+    figure, axes = panels(1, 2, 3.8)
+    axes[0].plot(ratios.pinion_teeth, ratios.geometric_contact_ratio, "s-", color=VERMILION, markersize=4)
+    axes[0].plot(ratios.pinion_teeth, ratios.contact_ratio, "o-", color=BLUE, markersize=4)
+    axes[0].annotate(
+        "true contact lines", (0.5, 0.86), xycoords="axes fraction", color=VERMILION, ha="center"
+    )
+    axes[0].annotate("Tregold", (0.5, 0.16), xycoords="axes fraction", color=BLUE, ha="center")
+    axes[0].set(xlabel="number of pinion teeth $N_1$", ylabel="contact ratio", ylim=(1.0, None))
+    axes[1].plot(ratios.fraction, ratios.total_length_geometric * _MM, color=VERMILION)
+    axes[1].plot(ratios.fraction, ratios.total_length * _MM, color=BLUE)
+    axes[1].set(xlabel="$t/T_0$", ylabel="total length of contact lines [mm]", ylim=(0, None))
+    for panel, letter in zip(axes, "ab", strict=True):
+        panel.set_title(f"({letter})", loc="left")
+    return figure
+
+
+@styled
+def undercut_condition(condition: xr.Dataset) -> Figure:
+    """Condition of undercutting over the local pressure angle, with its real roots.
+
+    Parameters
+    ----------
+    condition : xarray.Dataset
+        ``value`` [-] over ``tangent``; attribute ``roots``: the real roots, the last one physical.
+    """
+    figure, (axes,) = panels(1, 1, 3.4)
+    axes.axhline(0, color=INK, linewidth=0.8)
+    axes.plot(condition.tangent, condition.value)
+    *others, physical = condition.attrs["roots"]
+    for root in others:
+        axes.plot(root, 0, "o", color=GREY, markersize=8, markerfacecolor="white", zorder=5)
+        label_line(axes, f"$t$ = {root:.4f}\non the far branch", (root, 0), (10, 26))
+    axes.plot(physical, 0, "o", color=VERMILION, markersize=8, zorder=5)
+    label_line(axes, f"$t$ = {physical:.4f}\nphysical", (physical, 0), (-10, 30))
+    axes.set(xlabel=r"$t = \tan(\phi_s + \theta_{0s} + \theta_s^*)$", ylabel="condition (left $-$ right)")
+    return figure
+
+
+@styled
+def limits_against_shaft_angle(limits: xr.Dataset) -> Figure:
+    """Limiting radii and contact ratios over the shaft angle.
+
+    Parameters
+    ----------
+    limits : xarray.Dataset
+        ``inner_radius``, ``outer_radius`` [m], ``contact_ratio``, ``geometric_contact_ratio`` over ``shaft_angle_deg``.
+    """
+    figure, axes = panels(1, 2, 3.8)
+    axes[0].fill_between(
+        limits.shaft_angle_deg,
+        limits.inner_radius * _MM,
+        limits.outer_radius * _MM,
+        color=BLUE,
+        alpha=0.15,
+        linewidth=0,
+    )
+    axes[0].plot(limits.shaft_angle_deg, limits.outer_radius * _MM, color=BLUE)
+    axes[0].plot(limits.shaft_angle_deg, limits.inner_radius * _MM, color=BLUE)
+    axes[0].annotate("pointed, $R_2$", (0.5, 0.93), xycoords="axes fraction", ha="center")
+    axes[0].annotate("undercut, $R_1$", (0.5, 0.04), xycoords="axes fraction", ha="center")
+    axes[0].set(xlabel=r"shaft angle $\gamma$ [degree]", ylabel="radius on the gear plane [mm]")
+    axes[1].plot(
+        limits.shaft_angle_deg, limits.geometric_contact_ratio, color=VERMILION, label="true contact lines"
+    )
+    axes[1].plot(limits.shaft_angle_deg, limits.contact_ratio, color=BLUE, label="Tregold")
+    axes[1].set(xlabel=r"shaft angle $\gamma$ [degree]", ylabel="contact ratio", ylim=(1.0, None))
+    axes[1].legend(loc="center right")
+    return figure
+
+
+@styled
+def pointing(sections: xr.Dataset) -> Figure:
+    """Tooth sections normal to the pinion's axis, from the inner to the outer end, where the flanks meet.
+
+    Parameters
+    ----------
+    sections : xarray.Dataset
+        ``across``, ``height`` [m] over (position, flank, profile); coordinate ``position`` [m].
+    """
+    figure, axes = panels(1, sections.sizes["position"], 3.2, sharey=True)
+    for k, panel in enumerate(axes):
+        section = sections.isel(position=k)
+        left, right = (section.isel(flank=f) for f in (0, 1))
+        across = np.concatenate([left.across, right.across[::-1]]) * _MM
+        height = np.concatenate([left.height, right.height[::-1]]) * _MM
+        panel.fill(across, height, color="#B8C4CE", edgecolor=INK, linewidth=1.0)
+        panel.set_title(f"$u$ = {float(section.position) * _MM:.1f} mm", loc="left")
+        panel.set_xlabel("across [mm]")
+        panel.set_aspect("equal")
+    axes[0].set_ylabel("axial [mm]")
+    return figure

@@ -1,0 +1,86 @@
+"""One look for every figure: colours that colour-blind readers can tell apart, sizes that survive a narrow screen."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+# Okabe and Ito's palette, in the order in which it is used for lines.
+BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7"
+INK, GREY, FAINT = "#222222", "#767676", "#D9D9D9"
+
+# Inches; the text column of the book is about 7.3 in wide at 100 dpi.
+WIDTH = 7.2
+
+_SETTINGS = {
+    "axes.edgecolor": INK,
+    "axes.grid": True,
+    "axes.labelsize": 11,
+    "axes.linewidth": 0.8,
+    "axes.prop_cycle": mpl.cycler(color=[BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE]),
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlesize": 11,
+    "figure.facecolor": "white",
+    "font.size": 11,
+    "grid.color": FAINT,
+    "grid.linewidth": 0.6,
+    "legend.fontsize": 10,
+    "legend.frameon": False,
+    "lines.linewidth": 1.6,
+    "mathtext.fontset": "cm",
+    "savefig.facecolor": "white",
+    "xtick.labelsize": 10,
+    "ytick.labelsize": 10,
+}
+
+
+def styled(draw: Callable[P, R]) -> Callable[P, R]:
+    """Run a drawing function under the book's settings, leaving Matplotlib's own as they were."""
+
+    @functools.wraps(draw)
+    def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
+        with mpl.rc_context(_SETTINGS):  # type: ignore[arg-type]
+            return draw(*args, **kwargs)
+
+    return wrapper
+
+
+def panels(
+    rows: int = 1, columns: int = 1, height: float = 4.0, **options: object
+) -> tuple[Figure, list[Axes]]:
+    """Figure of the book's width with a flat list of its axes.
+
+    Parameters
+    ----------
+    rows, columns : int
+        Grid of axes.
+    height : float
+        Height of the figure [in].
+    **options
+        Passed to :meth:`matplotlib.figure.Figure.subplots`.
+    """
+    # Not pyplot's figure: nothing is registered globally, nothing has to be closed.
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False, **options)  # type: ignore[arg-type]
+    return figure, list(axes.ravel())
+
+
+def label_line(axes: Axes, text: str, xy: tuple[float, float], xytext: tuple[float, float]) -> None:
+    """Name a feature beside it, with a thin leader, instead of in a legend."""
+    axes.annotate(
+        text,
+        xy=xy,
+        xytext=xytext,
+        textcoords="offset points",
+        arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0},
+        color=INK,
+    )

@@ -1,0 +1,130 @@
+"""The ledger: a status follows from the numbers, or the chapter stops."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from facegear import printed
+
+ENTRY = {
+    "id": "case_1_outer_radius",
+    "where": "Fig. 4.4, caption",
+    "quantity": "Outer radius",
+    "printed": "231.94",
+    "unit": "mm",
+    "how": "Drive(26, 130, 3.175e-3).outer_radius",
+    "status": printed.REPRODUCED,
+    "remark": "To every digit.",
+}
+
+
+def write(tmp_path, *entries):
+    path = tmp_path / "ch03.yaml"
+    path.write_text(yaml.safe_dump(list(entries)), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("digits", "computed", "holds"),
+    [
+        ("231.94", 231.9449, True),
+        ("231.94", 231.935, True),
+        ("231.94", 231.9451, False),
+        ("283", 283.49, True),
+        ("283", 282.4, False),
+        ("1.6e-3", 1.64e-3, True),
+        ("1.6e-3", 2.43e-3, False),
+        ("1.58e8", 1.5834e8, True),
+        ("1.58e8", 1.5734e8, False),
+        ("231.94", float("nan"), False),
+    ],
+)
+def test_printed_digits_set_the_tolerance(tmp_path, digits, computed, holds):
+    (value,) = printed.load_printed(write(tmp_path, ENTRY | {"printed": digits}))
+    assert value.holds(computed) is holds
+
+
+@pytest.mark.parametrize(
+    ("entry", "computed", "status"),
+    [
+        (ENTRY, 231.94, printed.REPRODUCED),
+        (ENTRY | {"convention": "tip addendum 1/Pd"}, 231.94, printed.REPRODUCED_UNDER_CONVENTION),
+        (ENTRY, 240.0, printed.DIFFERS),
+        (ENTRY, None, printed.UNDECIDED),
+        (ENTRY | {"printed": True, "unit": ""}, True, printed.REPRODUCED),
+        (ENTRY | {"printed": True, "unit": ""}, False, printed.DIFFERS),
+    ],
+)
+def test_status_follows_from_the_numbers(tmp_path, entry, computed, status):
+    values = printed.load_printed(write(tmp_path, entry | {"status": status}))
+    (row,) = printed.ledger(values, {ENTRY["id"]: computed})
+    assert row.status == status
+    for wrong in set(printed.STATUSES) - {status}:
+        values = printed.load_printed(write(tmp_path, entry | {"status": wrong}))
+        with pytest.raises(printed.LedgerError, match="the file claims"):
+            printed.ledger(values, {ENTRY["id"]: computed})
+
+
+def test_nothing_printed_is_left_out_and_nothing_is_made_up(tmp_path):
+    values = printed.load_printed(write(tmp_path, ENTRY))
+    with pytest.raises(printed.LedgerError, match="case_1_outer_radius: printed but not computed"):
+        printed.ledger(values, {})
+    with pytest.raises(printed.LedgerError, match="other: computed but not printed"):
+        printed.ledger(values, {ENTRY["id"]: 231.94, "other": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"status": "fine"}, "must be one of"),
+        ({"printed": 231.94}, "must be digits in quotes"),
+        ({"printed": "about 232"}, "must be digits in quotes"),
+        ({"colour": "red"}, "colour"),
+    ],
+)
+def test_bad_entries_are_refused(tmp_path, change, message):
+    with pytest.raises(printed.LedgerError, match=message):
+        printed.load_printed(write(tmp_path, ENTRY | change))
+
+
+def test_missing_key_and_repeated_id_are_refused(tmp_path):
+    with pytest.raises(printed.LedgerError, match="remark"):
+        printed.load_printed(write(tmp_path, {k: v for k, v in ENTRY.items() if k != "remark"}))
+    with pytest.raises(printed.LedgerError, match="more than once"):
+        printed.load_printed(write(tmp_path, ENTRY, ENTRY))
+
+
+@pytest.mark.parametrize("content", ["", "[1, 2", "a: 1"])
+def test_unusable_file_is_refused(tmp_path, content):
+    path = tmp_path / "ch03.yaml"
+    path.write_text(content)
+    with pytest.raises(printed.LedgerError, match=r"ch03\.yaml"):
+        printed.load_printed(path)
+    with pytest.raises(printed.LedgerError, match=r"none\.yaml is missing"):
+        printed.load_printed(tmp_path / "none.yaml")
+
+
+def test_a_truth_value_is_not_a_number(tmp_path):
+    (number,) = printed.load_printed(write(tmp_path, ENTRY))
+    with pytest.raises(printed.LedgerError, match="needs a number"):
+        number.holds(True)
+    (statement,) = printed.load_printed(write(tmp_path, ENTRY | {"printed": True}))
+    with pytest.raises(printed.LedgerError, match="needs True or False"):
+        statement.holds(1.0)
+
+
+def test_saved_ledger_is_verified_again_when_read(tmp_path):
+    rows = printed.ledger(printed.load_printed(write(tmp_path, ENTRY)), {ENTRY["id"]: 231.94})
+    path = printed.save_ledger(rows, tmp_path / "build" / "ch03.yaml")
+    assert printed.load_ledger(path) == rows
+    path.write_text(path.read_text().replace("computed: 231.94", "computed: 240.0"))
+    with pytest.raises(printed.LedgerError, match="the file claims"):
+        printed.load_ledger(path)
+
+
+@pytest.mark.parametrize(
+    "path", sorted((Path(__file__).parents[1] / "data" / "printed").glob("*.yaml")), ids=lambda p: p.stem
+)
+def test_the_files_of_the_repository_are_well_formed(path):
+    assert printed.load_printed(path)
