@@ -105,12 +105,12 @@ class Derivation:
             acceleration = sp.Symbol(f"\\ddot q_{i} + omega_{i}^2 q_{i}")
             rows.append(("2-16", f"equation of motion of coordinate {i}", sp.Eq(acceleration, expression)))
         for (i, j), amplitudes in self.harmonics.items():
-            for number, expression in enumerate(amplitudes, start=1):
+            for index, expression in enumerate(amplitudes, start=1):
                 rows.append(
                     (
                         "2-20",
                         f"harmonic amplitude, {i}{j}",
-                        sp.Eq(sp.Symbol(f"H_{number}^{i}{j}"), expression),
+                        sp.Eq(sp.Symbol(f"H_{index}^{i}{j}"), expression),
                     )
                 )
         for i, expression in self.resonant.items():
