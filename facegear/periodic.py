@@ -245,7 +245,7 @@ class PeriodicSystem:
         """
         kicks: list[tuple[float, Array]] = []
         for at, matrix in self.impulses():
-            kick: Array = -np.linalg.solve(self.mass_matrix(at), matrix)
+            kick: Array = np.asarray(-np.linalg.solve(self.mass_matrix(at), matrix), dtype=float)
             kicks.append((at, kick))
         return kicks
 

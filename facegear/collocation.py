@@ -1,0 +1,569 @@
+"""Contact-force collocation: fast transition matrices of systems with rank-one loads.
+
+Between contacts' instants of entry and exit the free motion of the constant part M q̈ + C q̇ + K q = 0 is known
+exactly from its modes, and all that is unknown are the contact forces
+
+    f_a = k_a u_a + c_a u̇_a + m_a ü_a,    u_a = φ_aᵀ q,
+
+a few scalar functions of time. They are found at the Gauss nodes of panels that end at the breakpoints. With
+modal coordinates y of the free motion, ẏ = Λ y − Σ β_a f_a, variation of constants gives on each panel
+
+    [I + k H₀ + c H₁ + m (H₂ + D)] f = (k F₀ + c F₁ + m F₂) y₀,    y₁ = E y₀ − G f
+
+where H_s = h a_ij Re Σ_m z_s,im e^{λ_m (t_i − t_j)} β_jm, with spectral integration weights a_ij; z₀, z₁, z₂ turn
+modal coordinates into u, u̇, ü of the free motion and D_ab = φ_aᵀ M⁻¹ φ_b, which carries the contact mass exactly.
+H, F, E, G do not depend on k, c, m, so a whole column of a map shares them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.periodic import ContactLoad, PeriodicSystem
+from facegear.piecewise import Array, PiecewiseChebyshev
+
+ComplexArray = NDArray[np.complex128]
+
+
+class UnsuitableSystemError(ValueError):
+    """The free motion of a system is not a sum of oscillations, which contact-force collocation needs."""
+
+
+@dataclass(frozen=True, eq=False)
+class FreeModes:
+    """Modes of M q̈ + C q̇ + K q = 0: q = Re(displacement y), q̇ = Re(velocity y), y = coordinates (q, q̇).
+
+    Attributes
+    ----------
+    eigenvalues : array of complex, shape (n,)
+        λ with positive imaginary part [1/s].
+    displacement, velocity : array of complex, shape (n, n)
+        Columns of modes, scaled to unit kinetic energy.
+    coordinates : array of complex, shape (n, 2n)
+        y from the state.
+    input : array of complex, shape (n, n)
+        Modal acceleration by a force on the coordinates: coordinates' velocity half times M⁻¹.
+    """
+
+    eigenvalues: ComplexArray
+    displacement: ComplexArray
+    velocity: ComplexArray
+    coordinates: ComplexArray
+    input: ComplexArray
+
+    @classmethod
+    def of(cls, system: PeriodicSystem) -> FreeModes:
+        """Find the modes of the constant part of a system.
+
+        Raises
+        ------
+        UnsuitableSystemError
+            If a mode does not oscillate (rigid-body or overdamped) or the modes do not span the state space.
+        """
+        n = system.size
+        inverse = np.linalg.inv(np.linalg.cholesky(system.mass))
+        stiffness = inverse @ system.stiffness @ inverse.T
+        damping = inverse @ system.damping @ inverse.T
+        scale = float(np.sqrt(np.abs(stiffness).max()))
+        if scale == 0.0:
+            raise UnsuitableSystemError("stiffness is zero: every free motion is a rigid-body motion")
+        # In the state (scale·x, ẋ) both halves have the size of a root energy.
+        state = np.block([[np.zeros((n, n)), scale * np.eye(n)], [-stiffness / scale, -damping]])
+        values, vectors = np.linalg.eig(state)
+        oscillating = values.imag > 1e-9 * np.abs(values).max()
+        if np.count_nonzero(oscillating) != n:
+            raise UnsuitableSystemError(
+                f"the free motion has {np.count_nonzero(oscillating)} oscillating modes, not {n}: "
+                "some are rigid-body or overdamped"
+            )
+        values = values[oscillating]
+        vectors = vectors[:, oscillating]
+        vectors = vectors / np.linalg.norm(vectors[n:], axis=0)
+        basis = np.concatenate([vectors, vectors.conj()], axis=1)
+        condition = np.linalg.cond(basis)
+        if not condition < 1e5:
+            raise UnsuitableSystemError(
+                f"the free modes are close to dependent (condition number {condition:.2g})"
+            )
+        # x = Re(W y) with y twice the coefficients of the pairs W c + conj(W c).
+        rows = 2.0 * np.linalg.inv(basis)[:n]
+        root = inverse.T
+        to_energy = np.linalg.inv(root)
+        return cls(
+            eigenvalues=values,
+            displacement=root @ vectors[:n] / scale,
+            velocity=root @ vectors[n:],
+            coordinates=np.concatenate([rows[:, :n] * scale @ to_energy, rows[:, n:] @ to_energy], axis=1),
+            input=rows[:, n:] @ inverse,
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of modes n."""
+        return int(self.eigenvalues.size)
+
+    def state_from_real(self) -> Array:
+        """Matrix from (Re y, Im y) to (q, q̇), shape (2n, 2n)."""
+        both = np.concatenate([self.displacement, self.velocity])
+        return np.concatenate([both.real, -both.imag], axis=1)
+
+    def real_from_state(self) -> Array:
+        """Matrix from (q, q̇) to (Re y, Im y), shape (2n, 2n)."""
+        return np.concatenate([self.coordinates.real, self.coordinates.imag])
+
+
+def is_suitable(system: PeriodicSystem) -> bool:
+    """Whether the free motion of the constant part is a sum of n oscillations, as collocation needs."""
+    try:
+        FreeModes.of(system)
+    except UnsuitableSystemError:
+        return False
+    return True
+
+
+@lru_cache(maxsize=16)
+def _gauss(nodes: int) -> tuple[Array, Array, Array]:
+    """Gauss-Legendre nodes and weights on [0, 1], and a_ij = ∫_0^{x_i} l_j, shape (nodes, nodes)."""
+    x, weights = np.polynomial.legendre.leggauss(nodes)
+    degrees = np.arange(nodes)
+    legendre = np.polynomial.legendre.legvander(x, nodes)
+    # l_j = Σ_d (2d+1)/2 w_j P_d(x_j) P_d and ∫_{-1}^x P_d = (P_{d+1} − P_{d−1})/(2d+1).
+    coefficients = (degrees + 0.5)[:, None] * legendre[:, :nodes].T * weights
+    integrals = np.empty((nodes, nodes))
+    integrals[:, 0] = x + 1.0
+    integrals[:, 1:] = (legendre[:, 2:] - legendre[:, : nodes - 1]) / (2 * degrees[1:] + 1)
+    return (x + 1.0) / 2.0, weights / 2.0, integrals @ coefficients / 2.0
+
+
+@lru_cache(maxsize=64)
+def _panels_for_shape(function: PiecewiseChebyshev, nodes: int) -> tuple[float, ...]:
+    """Longest panel on each piece on which interpolation at the Gauss nodes resolves the function.
+
+    The panel's end value converges twice as fast as the force inside, so the shape vector itself needs half the
+    digits only.
+    """
+    x = _gauss(nodes)[0]
+    probe = np.linspace(0.0, 1.0, 2 * nodes + 1)
+    vander = np.polynomial.legendre.legvander
+    interpolate = vander(2 * probe - 1, nodes - 1) @ np.linalg.inv(vander(2 * x - 1, nodes - 1))
+    longest = []
+    for start, length in zip(function.breakpoints, function.lengths, strict=True):
+        count = 1
+        while True:
+            offsets = np.arange(count)[:, None]
+            at_nodes = function(start + length * (offsets + x) / count)
+            inside = np.clip(length * (offsets + probe) / count, 1e-9 * length, (1.0 - 1e-9) * length)
+            error = np.abs(np.einsum("ij,pjn->pin", interpolate, at_nodes) - function(start + inside)).max()
+            if error <= SHAPE_TOLERANCE * function.largest:
+                break
+            count += 1
+        longest.append(length / count)
+    return tuple(longest)
+
+
+#: Interpolation error of a shape vector allowed on a panel, relative to its largest component.
+SHAPE_TOLERANCE = 1e-6
+
+
+def _panel_edges(system: PeriodicSystem, nodes: int, fastest: float, panel_angle: float) -> Array:
+    """Ends of the panels: all breakpoints, and points between for fast motion and strongly curved shapes."""
+    ends = np.append(system.breakpoints[1:], 1.0)
+    edges = []
+    for start, end in zip(system.breakpoints, ends, strict=True):
+        count = int(np.ceil((end - start) * fastest * system.period / panel_angle))
+        for load in system.loads:
+            for function in [load.shape] if load.weight is None else [load.shape, load.weight]:
+                piece = np.searchsorted(function.breakpoints, (start + end) / 2.0, side="right") - 1
+                longest = _panels_for_shape(function, nodes)[piece]
+                count = max(count, int(np.ceil((end - start) / longest - 1e-9)))
+        edges.append(np.linspace(start, end, max(count, 1), endpoint=False))
+    return np.append(np.concatenate(edges), 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Panels:
+    """Everything that does not depend on the load parameters; P panels, N nodes, p loads, n modes.
+
+    Attributes
+    ----------
+    force_on_force : array, shape (3, P, N p, N p)
+        H₀, H₁, H₂ + D.
+    force_on_state : array, shape (3, P, N p, 2n)
+        F₀, F₁, F₂, acting on (Re y, Im y).
+    free : array, shape (P, 2n, 2n)
+        E.
+    input : array, shape (P, 2n, N p)
+        G.
+    """
+
+    force_on_force: Array
+    force_on_state: Array
+    free: Array
+    input: Array
+
+
+def _split(matrix: ComplexArray) -> Array:
+    """Real rows (Re, −Im), so that Re(matrix y) = rows (Re y, Im y)."""
+    return np.concatenate([matrix.real, -matrix.imag], axis=-1)
+
+
+def _build(system: PeriodicSystem, modes: FreeModes, nodes: int, edges: Array) -> _Panels:
+    x, weights, integration = _gauss(nodes)
+    period = system.period
+    start, length = edges[:-1], np.diff(edges)
+    count, p, n = start.size, len(system.loads), modes.size
+    fractions = start[:, None] + length[:, None] * x
+    h = length * period
+    # Exponentials from the middle of each panel, so that neither they nor their inverses grow large.
+    spread = np.exp(modes.eigenvalues * (h[:, None, None] * (x[:, None] - 0.5)))
+    half = np.exp(modes.eigenvalues * (h[:, None] / 2.0))
+
+    phi = np.stack([load.shape(fractions) for load in system.loads], axis=2)
+    weighted = np.stack([_weighted_shape(load, fractions) for load in system.loads], axis=2)
+    readings = [
+        phi @ modes.displacement,
+        phi @ modes.velocity,
+        phi @ (modes.velocity * modes.eigenvalues),
+    ]
+    for a, load in enumerate(system.loads):
+        if load.rate == "total":
+            slope = load.slope(fractions) / period
+            curvature = load.curvature(fractions) / period**2
+            readings[1][:, :, a] += slope @ modes.displacement
+            readings[2][:, :, a] += 2.0 * slope @ modes.velocity + curvature @ modes.displacement
+    beta = weighted @ modes.input.T
+
+    rows = (np.stack(readings) * spread[None, :, :, None, :]).reshape(3, count, nodes * p, n)
+    columns = (beta / spread[:, :, None, :]).reshape(count, nodes * p, n)
+    kernel = _split(rows) @ np.concatenate([columns.real, columns.imag], axis=-1).swapaxes(-1, -2)
+    window = np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
+    force_on_force = kernel * (h[:, None, None] * window)
+    direct = phi @ np.linalg.solve(system.mass, weighted.swapaxes(-1, -2))
+    blocks = force_on_force[2].reshape(count, nodes, p, nodes, p)
+    blocks[:, np.arange(nodes), :, np.arange(nodes), :] += direct.swapaxes(0, 1)
+
+    push = (columns * half[:, None, :]) * (h[:, None] * np.repeat(weights, p))[:, :, None]
+    decay = half**2
+    free = np.zeros((count, 2 * n, 2 * n))
+    i = np.arange(n)
+    free[:, i, i] = free[:, n + i, n + i] = decay.real
+    free[:, n + i, i] = decay.imag
+    free[:, i, n + i] = -decay.imag
+    return _Panels(
+        force_on_force=force_on_force,
+        force_on_state=_split(rows * half[:, None, :]),
+        free=free,
+        input=np.concatenate([push.real, push.imag], axis=-1).swapaxes(-1, -2),
+    )
+
+
+def _weighted_shape(load: ContactLoad, fractions: Array) -> Array:
+    phi = load.shape(fractions)
+    return phi if load.weight is None else phi * load.weight(fractions)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadColumn:
+    """Load parameters along a column of a map: V values, p loads.
+
+    Attributes
+    ----------
+    mass, damping, stiffness : array, shape (V, p)
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "damping", "stiffness"):
+            values = getattr(self, name)
+            if values.shape != self.mass.shape or values.ndim != 2:
+                raise ValueError(f"{name} must have shape (values, loads) as the others; got {values.shape}")
+            if not np.isfinite(values).all() or (values < 0.0).any():
+                raise ValueError(f"{name} must be finite and >= 0; got {values.min()!r} as smallest value")
+
+    def __len__(self) -> int:
+        return int(self.mass.shape[0])
+
+    def stacked(self) -> Array:
+        """All parameters, shape (V, 3 p)."""
+        return np.concatenate([self.mass, self.damping, self.stiffness], axis=1)
+
+    @classmethod
+    def from_stacked(cls, values: Array) -> LoadColumn:
+        """Undo :meth:`stacked`; rounding below zero is taken off."""
+        mass, damping, stiffness = np.split(np.maximum(values, 0.0), 3, axis=1)
+        return cls(mass, damping, stiffness)
+
+
+class FreeMotion:
+    """A system prepared for many values of its load parameters up to those of `column`.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+        Its own load parameters are not used.
+    column : LoadColumn
+        The values that will be asked for, so that the panels suit the fastest of them.
+    nodes : int
+        Gauss nodes a panel.
+    panel_angle : float
+        Largest product of fastest frequency and panel length [rad].
+
+    Raises
+    ------
+    UnsuitableSystemError
+        See :meth:`FreeModes.of`.
+    """
+
+    def __init__(self, system: PeriodicSystem, column: LoadColumn, nodes: int, panel_angle: float) -> None:
+        self.system = system
+        self.modes = FreeModes.of(system)
+        samples = np.linspace(0.0, 1.0, 16, endpoint=False)
+        self.mobility = np.array(
+            [_quadratic(system.mass, load.shape(samples)).max() for load in system.loads]
+        )
+        stiffest = float((column.stiffness @ self.mobility).max(initial=0.0))
+        most_damped = float((column.damping @ self.mobility).max(initial=0.0))
+        free = float(np.abs(self.modes.eigenvalues).max())
+        self.edges = _panel_edges(
+            system, nodes, float(np.hypot(free, np.sqrt(stiffest))) + most_damped, panel_angle
+        )
+        self.panels = _build(system, self.modes, nodes, self.edges)
+        self.kicks = self._kick_data()
+
+    def _kick_data(self) -> list[tuple[int, int, Array, Array]]:
+        """Panel, load, φ and Δφ̇ of each slope jump of a load with total rate."""
+        found = []
+        for a, load in enumerate(self.system.loads):
+            if load.rate != "total":
+                continue
+            jumps = load.slope.jumps() / self.system.period
+            for at, jump in zip(load.shape.breakpoints, jumps, strict=True):
+                panel = int(np.argmin(np.abs(self.edges[:-1] - at)))
+                found.append((panel, a, load.shape(at), jump))
+        return found
+
+    def transition_matrices(self, column: LoadColumn) -> Array:
+        """Φ in the modal coordinates (Re y, Im y) for each value of a column, shape (V, 2n, 2n)."""
+        panels = self.panels
+        count, size = panels.free.shape[0], panels.input.shape[-1]
+        # A chunk of values at a time keeps the memory near 100 MB.
+        chunk = max(1, 4_000_000 // (count * max(size, panels.free.shape[1]) * (size + panels.free.shape[1])))
+        parts = []
+        for begin in range(0, len(column), chunk):
+            part = slice(begin, begin + chunk)
+            parts.append(
+                self._chunk(LoadColumn(column.mass[part], column.damping[part], column.stiffness[part]))
+            )
+        return np.concatenate(parts)
+
+    def _chunk(self, column: LoadColumn) -> Array:
+        panels = self.panels
+        repeats = panels.input.shape[-1] // max(len(self.system.loads), 1)
+        left = np.broadcast_to(
+            np.eye(panels.input.shape[-1]), (len(column), *panels.force_on_force.shape[1:])
+        ).copy()
+        right = np.zeros((len(column), *panels.force_on_state.shape[1:]))
+        for order, values in enumerate((column.stiffness, column.damping, column.mass)):
+            if values.any():
+                factor = np.tile(values, (1, repeats))[:, None, :, None]
+                left += factor * panels.force_on_force[order]
+                right += factor * panels.force_on_state[order]
+        steps = panels.free - panels.input @ np.linalg.solve(left, right)
+        for panel, matrices in self._kicks(column).items():
+            steps[:, panel] = steps[:, panel] @ matrices
+        return chain(steps)
+
+    def _kicks(self, column: LoadColumn) -> dict[int, Array]:
+        """Jumps of the modal coordinates before a panel, each of shape (V, 2n, 2n)."""
+        kicks: dict[int, Array] = {}
+        if not self.kicks or not column.mass.any():
+            return kicks
+        system, n = self.system, self.system.size
+        to_state, to_real = self.modes.state_from_real(), self.modes.real_from_state()
+        for panel in sorted({panel for panel, *_ in self.kicks}):
+            at = self.edges[panel]
+            shapes = np.stack([load.shape(at) for load in system.loads])
+            mass = system.mass + np.einsum("va,ai,aj->vij", column.mass, shapes, shapes)
+            impulse = np.zeros((len(column), n, n))
+            for where, a, shape, jump in self.kicks:
+                if where == panel:
+                    impulse += column.mass[:, a, None, None] * np.outer(shape, jump)
+            velocity = -np.linalg.solve(mass, impulse)
+            kicks[panel] = np.eye(2 * n) + to_real[:, n:] @ velocity @ to_state[:n]
+        return kicks
+
+
+def _quadratic(mass: Array, vectors: Array) -> Array:
+    """φᵀ M⁻¹ φ of each row, shape (m,)."""
+    return np.einsum("mi,mi->m", vectors, np.linalg.solve(mass, vectors.T).T)
+
+
+def chain(steps: Array) -> Array:
+    """Product steps[:, -1] ... steps[:, 1] steps[:, 0], by pairs, shape (V, m, d, d) -> (V, d, d)."""
+    while steps.shape[1] > 1:
+        even = steps.shape[1] - steps.shape[1] % 2
+        pairs = steps[:, 1:even:2] @ steps[:, 0:even:2]
+        steps = np.concatenate([pairs, steps[:, even:]], axis=1)
+    return steps[:, 0]
+
+
+def transition_matrix(system: PeriodicSystem, nodes: int = 16, panel_angle: float = 10.0) -> Array:
+    """Floquet transition matrix of the state (q, q̇), shape (2n, 2n).
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    nodes : int
+        Gauss nodes a panel.
+    panel_angle : float
+        Largest product of fastest frequency and panel length [rad].
+
+    Raises
+    ------
+    UnsuitableSystemError
+        If the free motion has rigid-body, overdamped or defective modes.
+    """
+    column = LoadColumn(
+        *(
+            np.array([[getattr(load, name) for load in system.loads]])
+            for name in ("mass", "damping", "stiffness")
+        )
+    )
+    motion = FreeMotion(system, column, nodes, panel_angle)
+    matrix = motion.transition_matrices(column)[0]
+    return np.asarray(motion.modes.state_from_real() @ matrix @ motion.modes.real_from_state(), dtype=float)
+
+
+def column_transition_matrices(
+    system: PeriodicSystem,
+    column: LoadColumn,
+    nodes: int = 16,
+    panel_angle: float = 10.0,
+    tolerance: float = 1e-11,
+) -> Array:
+    """Transition matrices along a column of a map, in coordinates fixed along it.
+
+    The matrix is entire in stiffness and damping and analytic in mass ≥ 0. Where the parameters run along a
+    straight line it is therefore computed at Chebyshev points and its entries are interpolated, with more points
+    until the last coefficients are below the tolerance.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    column : LoadColumn
+        V values.
+    tolerance : float
+        Size of the last Chebyshev coefficients relative to the largest entry or 1.
+
+    Returns
+    -------
+    array, shape (V, 2n, 2n)
+        Similar to the transition matrices of the state (q, q̇): same eigenvalues.
+    """
+    motion = FreeMotion(system, column, nodes, panel_angle)
+    line = _StraightLine.through(column, float(motion.mobility.max(initial=0.0)))
+    if line is None:
+        return motion.transition_matrices(column)
+    return interpolate(lambda t: motion.transition_matrices(line.column(t)), line.variable, tolerance)
+
+
+@dataclass(frozen=True, eq=False)
+class _StraightLine:
+    """Load parameters start + s (end − start), and the variable t in which matrices are interpolated.
+
+    Without a mass along the line t = s. With one, t = 1/(1 + b m), b the mobility of the contact: the matrix then
+    stays smooth however heavy the mass.
+    """
+
+    start: Array
+    end: Array
+    variable: Array
+    mobility: float
+    heaviest: int | None
+
+    @classmethod
+    def through(cls, column: LoadColumn, mobility: float) -> _StraightLine | None:
+        """Find the line through a column, or None if its values do not lie on one."""
+        values = column.stacked()
+        span = np.ptp(values, axis=0)
+        size = np.abs(values).max(axis=0)
+        relative = span / np.where(size > 0.0, size, 1.0)
+        if relative.size == 0 or relative.max() == 0.0:
+            return None
+        leader = int(relative.argmax())
+        start, end = values[values[:, leader].argmin()], values[values[:, leader].argmax()]
+        s = (values[:, leader] - start[leader]) / (end[leader] - start[leader])
+        if (np.abs(start + s[:, None] * (end - start) - values) > 1e-13 * size).any():
+            return None
+        change = np.abs(end - start)[: column.mass.shape[1]]
+        heaviest = int(change.argmax()) if change.max(initial=0.0) > 0.0 else None
+        line = cls(start, end, s, mobility, heaviest)
+        if heaviest is None:
+            return line
+        mass = start[heaviest] + s * (end - start)[heaviest]
+        return cls(start, end, 1.0 / (1.0 + mobility * mass), mobility, heaviest)
+
+    def column(self, t: Array) -> LoadColumn:
+        """Load parameters at values of the variable."""
+        s = t
+        if self.heaviest is not None:
+            mass = (1.0 / t - 1.0) / self.mobility
+            s = (mass - self.start[self.heaviest]) / (self.end - self.start)[self.heaviest]
+        return LoadColumn.from_stacked(self.start + s[:, None] * (self.end - self.start))
+
+
+def interpolate(evaluate: Callable[[Array], Array], points: Array, tolerance: float) -> Array:
+    """Evaluate an analytic matrix function of one variable at many points by Chebyshev interpolation.
+
+    Parameters
+    ----------
+    evaluate : callable
+        (K,) values -> (K, d, d) matrices.
+    points : array, shape (V,)
+    tolerance : float
+        Size of the last coefficients relative to the largest entry or 1, at which to stop.
+
+    Returns
+    -------
+    array, shape (V, d, d)
+        Evaluated point by point instead, if that takes no more evaluations.
+    """
+    low, high = float(points.min()), float(points.max())
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    degree = 8
+    if degree + 1 >= points.size or half == 0.0:
+        return evaluate(points)
+    values = evaluate(middle + half * np.cos(np.pi * np.arange(degree + 1) / degree))
+    while True:
+        coefficients = _lobatto_coefficients(values)
+        sizes = np.abs(coefficients).max(axis=(1, 2))
+        # Two coefficients, in case one is small by accident.
+        if sizes[-2:].max() <= tolerance * max(float(np.abs(values).max()), 1.0):
+            break
+        if 2 * degree + 1 >= points.size:
+            return evaluate(points)
+        # The points of half the spacing contain the present ones.
+        between = evaluate(middle + half * np.cos(np.pi * (np.arange(degree) + 0.5) / degree))
+        finer = np.empty((2 * degree + 1, *values.shape[1:]))
+        finer[0::2], finer[1::2] = values, between
+        values, degree = finer, 2 * degree
+    basis = np.polynomial.chebyshev.chebvander(np.clip((points - middle) / half, -1.0, 1.0), degree)
+    return np.tensordot(basis, coefficients, axes=1)
+
+
+def _lobatto_coefficients(values: Array) -> Array:
+    """Chebyshev coefficients from values at cos(π j/K), j = 0 ... K, along the first axis."""
+    degree = values.shape[0] - 1
+    ends = np.ones(degree + 1)
+    ends[[0, -1]] = 0.5
+    order = np.arange(degree + 1)
+    transform = np.cos(np.pi * np.outer(order, order) / degree) * ends * ends[:, None] * (2.0 / degree)
+    return np.tensordot(transform, values, axes=1)

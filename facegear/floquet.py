@@ -1,0 +1,425 @@
+"""Floquet analysis of periodic linear systems (section 2.2.1).
+
+The state X = (q, q̇) after one period is Φ(T0, 0) X(0); the eigenvalues α of the transition matrix Φ, the
+Floquet multipliers, decide: the system is stable if and only if every |α| ≤ 1 (2-5 to 2-8). Each method of
+this module is a small frozen dataclass that turns a system into its Φ:
+
+- :class:`Stepwise`: the text's rule, A(t) held at its midpoint value in equal sub-intervals (2-9 to 2-11);
+- :class:`AlignedStepwise`: the same with sub-intervals that end where A(t) jumps or kinks;
+- :class:`Magnus`: fourth order, aligned, for any system, with a fixed number of sub-intervals;
+- :class:`AdaptiveMagnus`: the same, refined until an error estimate is met;
+- :class:`Collocation`: contact-force collocation, fast and spectrally accurate where it applies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from facegear import collocation
+from facegear.periodic import PeriodicSystem
+from facegear.piecewise import Array
+
+ComplexArray = NDArray[np.complex128]
+
+# Entries of the largest intermediate stack of matrices; keeps the memory of a column of a map near 100 MB.
+_STACK_ENTRIES = 2_000_000
+
+
+class Method(Protocol):
+    """A way to compute the Floquet transition matrix."""
+
+    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+        """Φ of systems with common size and breakpoints, in scaled coordinates, (V, 2n, 2n)."""
+        ...
+
+    def refined(self) -> Method:
+        """Return a method to judge this one by: clearly more accurate, and blind to other things."""
+        ...
+
+
+@dataclass(frozen=True)
+class Stepwise:
+    """Stepwise-constant A(t), equal sub-intervals, matrix exponential of each (2-9 to 2-11).
+
+    Second order where A(t) is continuous; first order at best, and erratic, where it jumps.
+
+    Parameters
+    ----------
+    sub_intervals : int
+        Q, number of sub-intervals of the period.
+    """
+
+    sub_intervals: int
+
+    def __post_init__(self) -> None:
+        _check_count(self.sub_intervals)
+
+    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+        """See :class:`Method`; refuses the velocity kicks of a contact mass with total rate."""
+        if any(system.impulses() for system in systems):
+            raise ValueError(
+                "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
+                "which equal sub-intervals cannot place; use AlignedStepwise, Magnus or Collocation"
+            )
+        family = _Family(systems)
+        edges = np.linspace(0.0, 1.0, self.sub_intervals + 1)
+        return family.product(edges, _midpoint)
+
+    def refined(self) -> Method:
+        """Aligned sub-intervals: halving equal ones can look converged where it is not (fraction 9/16)."""
+        return AlignedStepwise(2 * self.sub_intervals)
+
+
+@dataclass(frozen=True)
+class AlignedStepwise:
+    """Stepwise-constant A(t) with sub-intervals that end at the breakpoints: second order for any system.
+
+    Parameters
+    ----------
+    sub_intervals : int
+        Q; each smooth piece gets its share, rounded up.
+    """
+
+    sub_intervals: int
+
+    def __post_init__(self) -> None:
+        _check_count(self.sub_intervals)
+
+    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+        """See :class:`Method`."""
+        family = _Family(systems)
+        return family.product(_aligned_edges(family.breakpoints, self.sub_intervals, 1), _midpoint)
+
+    def refined(self) -> Method:
+        """Twice as many sub-intervals."""
+        return AlignedStepwise(2 * self.sub_intervals)
+
+
+@dataclass(frozen=True)
+class Magnus:
+    """Fourth-order Magnus integrator with two Gauss nodes a sub-interval, aligned with the breakpoints.
+
+    exp(h (A₁+A₂)/2 − √3/12 h² [A₁, A₂]), A₁ and A₂ at the Gauss nodes (Iserles, Munthe-Kaas, Nørsett and Zanna,
+    Acta Numerica 9, 2000).
+
+    Parameters
+    ----------
+    sub_intervals : int
+        Q; each smooth piece gets its share, rounded up.
+    """
+
+    sub_intervals: int
+
+    def __post_init__(self) -> None:
+        _check_count(self.sub_intervals)
+
+    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+        """See :class:`Method`."""
+        family = _Family(systems)
+        return family.product(_aligned_edges(family.breakpoints, self.sub_intervals, 1), _gauss_magnus)
+
+    def refined(self) -> Method:
+        """Twice as many sub-intervals."""
+        return Magnus(2 * self.sub_intervals)
+
+
+@dataclass(frozen=True)
+class AdaptiveMagnus:
+    """Magnus integrator, every sub-interval halved until two results agree, then extrapolated.
+
+    Parameters
+    ----------
+    tolerance : float
+        Largest error of an entry of Φ, in energy-like coordinates, relative to the largest entry or 1.
+
+    Raises
+    ------
+    ArithmeticError
+        When used, if 2¹⁷ sub-intervals do not reach the tolerance.
+    """
+
+    tolerance: float = 1e-10
+
+    def __post_init__(self) -> None:
+        if not 1e-13 <= self.tolerance <= 1e-2:
+            raise ValueError(f"tolerance must lie between 1e-13 and 1e-2; got {self.tolerance!r}")
+
+    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+        """See :class:`Method`."""
+        family = _Family(systems)
+        start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
+        factor = 1
+        coarse = family.product(_aligned_edges(family.breakpoints, start, factor), _gauss_magnus)
+        while True:
+            factor *= 2
+            edges = _aligned_edges(family.breakpoints, start, factor)
+            fine = family.product(edges, _gauss_magnus)
+            # The method is symmetric: its error runs in even powers, h⁴ + h⁶, so one extrapolation leaves h⁶.
+            correction = (fine - coarse) / 15.0
+            size = np.maximum(np.abs(fine).max(axis=(1, 2)), 1.0)
+            if (np.abs(correction).max(axis=(1, 2)) <= self.tolerance * size).all():
+                return fine + correction
+            if edges.size > 2**17:
+                raise ArithmeticError(
+                    f"transition matrix did not reach tolerance {self.tolerance:.1g} with {edges.size - 1} "
+                    "sub-intervals; the period is too long for the fastest motion"
+                )
+            coarse = fine
+
+    def refined(self) -> Method:
+        """A tenth of the tolerance, which halves the sub-intervals at least once more or extrapolates deeper."""
+        return AdaptiveMagnus(max(self.tolerance / 100.0, 1e-13))
+
+
+@dataclass(frozen=True)
+class Collocation:
+    """Contact-force collocation (:mod:`facegear.collocation`): exact free motion, forces at Gauss nodes.
+
+    Parameters
+    ----------
+    nodes : int
+        Gauss nodes a panel.
+    panel_angle : float
+        Largest product of fastest frequency and panel length [rad].
+
+    Raises
+    ------
+    collocation.UnsuitableSystemError
+        When used on a system whose free motion has rigid-body, overdamped or defective modes.
+    """
+
+    nodes: int = 16
+    panel_angle: float = 10.0
+
+    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+        """See :class:`Method`."""
+        scales = [_scaling(system) for system in systems]
+        matrices = [collocation.transition_matrix(system, self.nodes, self.panel_angle) for system in systems]
+        return np.stack(
+            [scale @ matrix @ np.linalg.inv(scale) for scale, matrix in zip(scales, matrices, strict=True)]
+        )
+
+    def refined(self) -> Method:
+        """Half as many nodes again and shorter panels."""
+        return Collocation(self.nodes + self.nodes // 2, 0.7 * self.panel_angle)
+
+
+def default_method(system: PeriodicSystem) -> Method:
+    """Return the method used when none is named: collocation where it applies, else adaptive Magnus."""
+    return Collocation() if collocation.is_suitable(system) else AdaptiveMagnus()
+
+
+def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> Array:
+    """Floquet transition matrix Φ(T0, 0) of the state (q, q̇) (2-6).
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    method : Method, optional
+        One of the methods of this module; :func:`default_method` if left out.
+
+    Returns
+    -------
+    array, shape (2n, 2n)
+        Where the period's origin is a breakpoint with a velocity kick, Φ runs from just before it.
+    """
+    chosen = default_method(system) if method is None else method
+    scale = _scaling(system)
+    return np.asarray(
+        np.linalg.solve(scale, chosen.scaled_transition_matrices([system])[0]) @ scale, dtype=float
+    )
+
+
+def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
+    """Transition matrices of a family of systems with common size and breakpoints, computed together.
+
+    Parameters
+    ----------
+    systems : sequence of PeriodicSystem
+        V systems; their periods, constant matrices and load parameters may differ.
+    method : Method, optional
+        :class:`AdaptiveMagnus` if left out, the fast way for small systems.
+
+    Returns
+    -------
+    array, shape (V, 2n, 2n)
+        In the state (q, q̇) of each system.
+
+    Raises
+    ------
+    ValueError
+        If sizes, numbers of loads or breakpoints differ.
+    """
+    chosen = AdaptiveMagnus() if method is None else method
+    scaled = chosen.scaled_transition_matrices(systems)
+    scale = np.stack([_scaling(system) for system in systems])
+    return np.asarray(np.linalg.solve(scale, scaled) @ scale, dtype=float)
+
+
+def multipliers(system: PeriodicSystem, method: Method | None = None) -> ComplexArray:
+    """Floquet multipliers, eigenvalues of the transition matrix (2-8), largest modulus first.
+
+    Returns
+    -------
+    array of complex, shape (2n,)
+    """
+    chosen = default_method(system) if method is None else method
+    values = _eigenvalues(chosen.scaled_transition_matrices([system]))[0]
+    return values[np.argsort(-np.abs(values), kind="stable")]
+
+
+def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
+    """Growth rate ln(max|α|)/T0 [1/s] (2-8); the system is unstable where it is positive."""
+    radius = np.abs(multipliers(system, method)[0])
+    return float(np.log(radius) / system.period)
+
+
+def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
+    """Largest modulus of the multipliers of each system of a family, shape (V,).
+
+    As :func:`transition_matrices`, without turning back to the state (q, q̇).
+    """
+    chosen = AdaptiveMagnus() if method is None else method
+    return np.abs(_eigenvalues(chosen.scaled_transition_matrices(systems))).max(axis=-1)
+
+
+def error_estimate(system: PeriodicSystem, method: Method) -> float:
+    """Estimate of the error of the spectral radius max|α| found by a method.
+
+    The dominant multiplier of the method is compared with the nearest one of its refinement, and the other way
+    round. That distance bounds the difference of the two spectral radii, and unlike that difference it does not
+    vanish by accident. Near a tongue's border, where two multipliers meet, it grows as the true error does.
+
+    Returns
+    -------
+    float
+        In the units of a multiplier [-]; at least the rounding error of Φ.
+    """
+    coarse = _eigenvalues(method.scaled_transition_matrices([system]))[0]
+    scaled = method.refined().scaled_transition_matrices([system])
+    fine = _eigenvalues(scaled)[0]
+    floor = 8.0 * np.finfo(float).eps * 2.0 * system.size * float(np.linalg.norm(scaled[0], 2))
+    distance = np.abs(coarse[:, None] - fine[None, :])
+    return float(
+        max(distance[np.abs(coarse).argmax()].min(), distance[:, np.abs(fine).argmax()].min()) + floor
+    )
+
+
+def _check_count(sub_intervals: int) -> None:
+    if (
+        isinstance(sub_intervals, bool)
+        or not isinstance(sub_intervals, (int, np.integer))
+        or sub_intervals < 1
+    ):
+        raise ValueError(f"sub_intervals must be a whole number >= 1; got {sub_intervals!r}")
+
+
+def _eigenvalues(matrices: Array) -> ComplexArray:
+    if not np.isfinite(matrices).all():
+        raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
+    return np.asarray(np.linalg.eigvals(matrices), dtype=complex)
+
+
+def _aligned_edges(breakpoints: Array, sub_intervals: int, factor: int) -> Array:
+    """Ends of sub-intervals that contain every breakpoint (0 among them), ascending from 0 to 1."""
+    ends = np.append(breakpoints[1:], 1.0)
+    parts = [
+        np.linspace(start, end, factor * int(np.ceil((end - start) * sub_intervals)), endpoint=False)
+        for start, end in zip(breakpoints, ends, strict=True)
+    ]
+    return np.append(np.concatenate(parts), 1.0)
+
+
+def _frequency_scale(system: PeriodicSystem) -> float:
+    """Return a typical fast frequency [rad/s] of the system: √(‖K‖/‖M‖) of the mean matrices."""
+    middle = system.breakpoints + np.diff(np.append(system.breakpoints, 1.0)) / 2.0
+    stiffness = np.linalg.solve(system.mass_matrix(middle), system.stiffness_matrix(middle))
+    fastest = float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
+    return fastest if fastest > 0.0 else 1.0 / system.period
+
+
+def _scaling(system: PeriodicSystem) -> Array:
+    """S of the scaled state S X = (ω Lᵀq, Lᵀq̇), M = L Lᵀ: both halves then have the size of a root energy."""
+    factor = np.linalg.cholesky(system.mass).T
+    zero = np.zeros_like(factor)
+    return np.block([[_frequency_scale(system) * factor, zero], [zero, factor]])
+
+
+Step = Callable[[Array, Array, Callable[[Array], Array]], Array]
+
+
+def _midpoint(start: Array, length: Array, state: Callable[[Array], Array]) -> Array:
+    """Exponent h A(midpoint) of each sub-interval (2-9)."""
+    return state(start + length / 2.0) * length[:, None, None]
+
+
+def _gauss_magnus(start: Array, length: Array, state: Callable[[Array], Array]) -> Array:
+    """Fourth-order Magnus exponent of each sub-interval."""
+    offset = np.sqrt(3.0) / 6.0
+    first = state(start + (0.5 - offset) * length) * length[:, None, None]
+    second = state(start + (0.5 + offset) * length) * length[:, None, None]
+    commutator = first @ second - second @ first
+    return (first + second) / 2.0 - (np.sqrt(3.0) / 12.0) * commutator
+
+
+class _Family:
+    """Systems with common size and breakpoints, stacked for batched linear algebra, in scaled coordinates."""
+
+    def __init__(self, systems: Sequence[PeriodicSystem]) -> None:
+        if not systems:
+            raise ValueError("systems must hold at least one PeriodicSystem; got none")
+        first = systems[0]
+        for system in systems[1:]:
+            if (
+                system.size != first.size
+                or len(system.loads) != len(first.loads)
+                or system.breakpoints.shape != first.breakpoints.shape
+                or np.abs(system.breakpoints - first.breakpoints).max() > 1e-12
+            ):
+                raise ValueError("systems must have the same size, number of loads and breakpoints")
+        self.systems = systems
+        self.size = first.size
+        self.breakpoints = first.breakpoints
+        self.periods = np.array([system.period for system in systems])
+        self.scale = np.stack([_scaling(system) for system in systems])
+        self.inverse_scale = np.linalg.inv(self.scale)
+        self.kicks = [dict(system.velocity_kicks()) for system in systems]
+
+    @property
+    def fastest_angle(self) -> float:
+        """Largest ω T0 of the family [rad]."""
+        return max(_frequency_scale(system) * system.period for system in self.systems)
+
+    def state_matrices(self, fraction: Array) -> Array:
+        """T0 S A S⁻¹ at fractions, shape (V, m, 2n, 2n)."""
+        stack = np.stack([system.state_matrix(fraction) for system in self.systems])
+        stack = self.scale[:, None] @ stack @ self.inverse_scale[:, None]
+        return stack * self.periods[:, None, None, None]
+
+    def product(self, edges: Array, step: Step) -> Array:
+        """Product of the exponentials of `step` over the sub-intervals between `edges`, kicks put in."""
+        chunk = max(1, _STACK_ENTRIES // (len(self.systems) * 4 * self.size**2))
+        total = np.broadcast_to(np.eye(2 * self.size), (len(self.systems), 2 * self.size, 2 * self.size))
+        start, length = edges[:-1], np.diff(edges)
+        for begin in range(0, start.size, chunk):
+            part = slice(begin, begin + chunk)
+            steps = expm(step(start[part], length[part], self.state_matrices))
+            self._put_in_kicks(steps, start[part])
+            total = collocation.chain(steps) @ total
+        return total
+
+    def _put_in_kicks(self, steps: Array, start: Array) -> None:
+        for number, kicks in enumerate(self.kicks):
+            for at, kick in kicks.items():
+                for place in np.flatnonzero(np.abs(start - at) < 1e-12):
+                    jump = np.eye(2 * self.size)
+                    jump[self.size :, : self.size] += kick
+                    steps[number, place] = (
+                        steps[number, place] @ self.scale[number] @ jump @ self.inverse_scale[number]
+                    )
