@@ -1,0 +1,56 @@
+# `make help` lists what there is. Needs Python 3.11 or newer and nothing else; everything goes into .venv.
+PYTHON3 ?= python3
+PYTHON  := .venv/bin/python
+PYTEST  := $(PYTHON) -m pytest
+# Tests and tools share two cores: one thread each.
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+export MKL_NUM_THREADS := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help environment book chapter test test-slow test-book lint format bench references clean
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
+
+environment: ## create or update .venv (every target below does it first)
+	@$(PYTHON3) tools/set_up.py
+
+book: environment ## execute what changed, check it, build the book
+	@$(PYTHON) tools/build.py
+
+chapter: environment ## execute and check one notebook: make chapter NAME=03_geometry_and_meshing
+	@test -f 'notebooks/$(NAME).ipynb' || { echo 'There is no notebooks/$(NAME).ipynb. Say for example: make chapter NAME=03_geometry_and_meshing'; exit 2; }
+	@$(PYTHON) tools/build.py 'notebook:$(NAME)' && echo 'Executed: build/executed/$(NAME).ipynb'
+
+test: environment ## run the tests (a minute or so)
+	@$(PYTEST) -n 2 -m 'not slow and not book'
+
+test-slow: environment ## run the tests that take a minute each
+	@$(PYTEST) -n 2 -m 'slow and not book'
+
+test-book: environment ## look at the built book in Chromium (make book first)
+	@$(PYTEST) -n 2 -m book
+
+lint: environment ## check style, types, import order, notebooks
+	$(PYTHON) -m ruff check .
+	$(PYTHON) -m ruff format --check .
+	$(PYTHON) -m mypy
+	.venv/bin/lint-imports
+	$(PYTHON) -m nbstripout --verify --keep-id --extra-keys '$(STRIPPED)' notebooks/*.ipynb
+
+format: environment ## put code and notebooks into their committed form
+	$(PYTHON) -m ruff check --fix .
+	$(PYTHON) -m ruff format .
+	$(PYTHON) -m nbstripout --keep-id --extra-keys '$(STRIPPED)' notebooks/*.ipynb
+
+bench: environment ## measure the performance table
+	@$(PYTHON) -m benchmarks
+
+references: environment ## make the stored arrays anew and say what moved: make references [NAME=03_geometry_and_meshing]
+	@$(PYTHON) tools/update_references.py $(NAME)
+
+clean: ## remove everything that is built (.venv stays)
+	rm -rf build/*
+
+STRIPPED := metadata.papermill metadata.widgets cell.metadata.papermill cell.metadata.execution

@@ -1,0 +1,182 @@
+"""The steps of the book, for doit: execute each notebook, then build the pages.
+
+`python tools/build.py` (what `make book` calls) runs them under the lock of this checkout; `doit list --all`
+shows them.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Iterator
+from pathlib import Path
+
+import nbformat
+from doit.exceptions import TaskFailed
+
+from tools.progress import CELLS, BuildReporter
+from tools.run_notebook import code_cells
+
+ROOT = Path(__file__).resolve().parent
+BUILD = ROOT / "build"
+EXECUTED = BUILD / "executed"
+SOURCE = BUILD / "book-src"
+PAGES = BUILD / "_build"
+
+DOIT_CONFIG = {
+    "default_tasks": ["book"],
+    "reporter": BuildReporter,
+    "backend": "sqlite3",
+    "dep_file": str(BUILD / "state.db"),
+    "num_process": 2,
+    "par_type": "thread",  # each thread waits for a process of its own
+    "continue": True,  # a notebook that fails does not keep the others from running
+}
+
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+CHAPTERS = [path.stem for path in NOTEBOOKS if path.stem < "90"]
+# Which notebooks read what others leave in `build/`; all others stand alone.
+NEEDS = {"90_ledger": CHAPTERS}
+
+# One thread a process: two notebooks share the machine, and threads slow small matrices down.
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+PLAIN = {"NO_COLOR": "1"}
+
+
+def files(folder: str, pattern: str) -> list[Path]:
+    """Return the files below a folder of the project that match a pattern."""
+    return sorted(path for path in (ROOT / folder).rglob(pattern) if path.is_file())
+
+
+def inputs(notebook: Path) -> list[Path]:
+    """Return the data files a notebook is checked against: those whose first number is its chapter's.
+
+    A file without a number belongs to every notebook, and a notebook without a chapter reads everything.
+    """
+
+    def number(path: Path) -> int | None:
+        found = re.search(r"\d+", path.stem)
+        return int(found.group()) if found else None
+
+    chapter = number(notebook)
+    everything = chapter is None or notebook.stem not in CHAPTERS
+    return [path for path in files("data", "*.*") if everything or number(path) in (chapter, None)]
+
+
+def execute_notebook(notebook: Path) -> TaskFailed | None:
+    """Run one notebook in a process of its own and follow its cells."""
+    name = notebook.stem
+    command = [sys.executable, str(ROOT / "tools" / "run_notebook.py"), str(notebook)]
+    command += [str(EXECUTED / notebook.name), "--failed", str(BUILD / "failed"), "--end-with-parent"]
+    CELLS.start(name)
+    log = BUILD / "logs" / f"{name}.txt"
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with (
+        log.open("w", encoding="utf-8") as messages,
+        subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=messages,
+            text=True,
+            env=os.environ | ONE_THREAD,
+        ) as process,
+    ):
+        for line in process.stdout:
+            if line.startswith("cell "):
+                CELLS.advance(name, int(line.split()[1]))
+    CELLS.finish(name, "done" if process.returncode == 0 else "stopped")
+    if process.returncode == 0:
+        return None
+    lines = log.read_text(encoding="utf-8").strip().splitlines()
+    return TaskFailed(lines[-1] if lines else f"{notebook.name}: ended with code {process.returncode}")
+
+
+def task_notebook() -> Iterator[dict]:
+    """Execute a notebook and check its arrays."""
+    for notebook in NOTEBOOKS:
+        before = [EXECUTED / f"{name}.ipynb" for name in NEEDS.get(notebook.stem, [])]
+        yield {
+            "name": notebook.stem,
+            "doc": f"execute notebooks/{notebook.name} and check its arrays",
+            "actions": [(execute_notebook, [notebook])],
+            "file_dep": [
+                notebook,
+                *before,
+                *files("facegear", "*.py"),
+                *inputs(notebook),
+                ROOT / "uv.lock",
+                ROOT / "tools" / "run_notebook.py",
+            ],
+            "targets": [EXECUTED / notebook.name],
+            "meta": {"notebook": notebook.stem, "cells": len(code_cells(notebook))},
+            "io": {"capture": False},
+        }
+
+
+def stage() -> None:
+    """Lay out the source folder of the book: pages, executed notebooks, arrays for download."""
+    shutil.rmtree(SOURCE, ignore_errors=True)
+    shutil.copytree(ROOT / "book", SOURCE)
+    (SOURCE / "notebooks").mkdir()
+    for notebook in NOTEBOOKS:
+        content = nbformat.read(EXECUTED / notebook.name, as_version=4)
+        for output in (output for cell in content.cells for output in cell.get("outputs", [])):
+            # Meant for JupyterLab; Sphinx would warn of it. The same output carries HTML for the pages.
+            output.get("data", {}).pop("application/vnd.plotly.v1+json", None)
+        nbformat.write(content, SOURCE / "notebooks" / notebook.name)
+    (SOURCE / "data").mkdir()
+    for array in files("data/reference", "*.nc"):
+        shutil.copy2(array, SOURCE / "data")
+
+
+def build_pages() -> TaskFailed | None:
+    """Build the pages from scratch; any warning of Sphinx is a failure."""
+    # From scratch, because Sphinx repeats a warning only for pages it reads anew: after a failed run the
+    # next one would pass.
+    shutil.rmtree(PAGES, ignore_errors=True)
+    command = [str(Path(sysconfig.get_path("scripts")) / "jupyter-book"), "build", str(SOURCE)]
+    command += [
+        "--config",
+        str(ROOT / "_config.yml"),
+        "--path-output",
+        str(BUILD),
+        "-W",
+        "-n",
+        "--keep-going",
+    ]
+    log = BUILD / "logs" / "sphinx.txt"
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with log.open("w", encoding="utf-8") as messages:
+        done = subprocess.run(
+            command,
+            stdout=messages,
+            stderr=subprocess.STDOUT,
+            env=os.environ | ONE_THREAD | PLAIN,
+            check=False,
+        )
+    if done.returncode == 0:
+        return None
+    marks = ("WARNING:", "ERROR:", "CRITICAL:")
+    lines = [line for line in log.read_text(encoding="utf-8").splitlines() if any(m in line for m in marks)]
+    first = lines[0].replace(str(SOURCE) + os.sep, "") if lines else "jupyter-book stopped"
+    return TaskFailed(f"{first} ({len(lines)} such lines in {log})")
+
+
+def task_book() -> dict:
+    """Lay the pages out and build the book."""
+    return {
+        "actions": [stage, build_pages],
+        "file_dep": [
+            *(EXECUTED / notebook.name for notebook in NOTEBOOKS),
+            *files("book", "*"),
+            *files("data/reference", "*.nc"),
+            ROOT / "_config.yml",
+            ROOT / "uv.lock",
+        ],
+        "targets": [PAGES / "html" / "index.html"],
+        "io": {"capture": False},
+    }
