@@ -16,17 +16,19 @@ _PUBLIC = {
     "rpm": "parameters",
     "watt": "parameters",
     # geometry
-    "ContactLines": "geometry",
+    "ContactLines": "flanks",
     "Drive": "geometry",
-    "ToothFlank": "geometry",
+    "PinionFlank": "flanks",
+    "ToothFlank": "flanks",
     # kinematics
     "ContactPath": "kinematics",
     "SkewLine": "kinematics",
     "mesh_period": "kinematics",
+    "PhaseSplit": "kinematics",
     "phase_split": "kinematics",
 }
 
-__all__ = sorted(_PUBLIC)  # noqa: PLE0605
+__all__ = sorted(_PUBLIC)
 
 
 def __getattr__(name: str) -> Any:

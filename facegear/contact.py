@@ -1,12 +1,12 @@
-"""Contact lines of a face-gear tooth as plain numbers: where they end, how long they are, where their middle is.
+"""Contact lines of a face-gear tooth as plain numbers: where they end, how long they are, their middle.
 
-A point of the tooth flank is named by two angles: the roll angle θs of the involute (3-2) and the local pressure
-angle α = φs + θ0s + θs, which (3-7) ties to the position along the shaper's axis, u_s = r_bs cot γs / cos α. At
-a rotation φs the contact line is the straight line θs = α − c in the (α, θs) plane, with c = φs + θ0s. It lies
-between four edges of the face-gear tooth and two circles of the pinion:
+A point of the tooth flank is named by two angles: the roll angle θs of the involute (3-2) and the local
+pressure angle α = φs + θ0s + θs, which (3-7) ties to the position along the shaper's axis,
+u_s = r_bs cot γs / cos α. At a rotation φs the contact line is the straight line θs = α − c in the (α, θs)
+plane, with c = φs + θ0s. It lies between three edges of the face-gear tooth and two circles of the pinion:
 
-- inner and outer edge: the planes −y_p = R1 and −y_p = R2 normal to the gear plane's radius at the pinion, which
-  for γ = 90° are u_s = L1 and u_s = L2;
+- inner and outer edge: the planes −y_p = R1 and −y_p = R2 normal to the gear plane's radius at the pinion,
+  which for γ = 90° are u_s = L1 and u_s = L2;
 - tooth top of the face gear: the cone about the face gear's axis whose generator in the plane of both axes is
   parallel to the shaper's axis, one addendum short of the pitch radius away. For γ = 90° it is the plane
   at that distance below the shaper's axis;
@@ -68,6 +68,8 @@ class ContactRegion:
     ----------
     base_radius : float
         r_bs [m].
+    space_half_angle : float
+        θ_0s [rad].
     gear_ratio : float
         m_2s.
     shaft_angle : float
@@ -78,24 +80,36 @@ class ContactRegion:
         r_p − a_g [m].
     tip_roll : float
         θ_a, roll angle at the pinion's tip circle [rad].
+    shaper_tip_roll : float
+        θ_s*, roll angle at the shaper's tip circle [rad].
     """
 
     base_radius: float
+    space_half_angle: float
     gear_ratio: float
     shaft_angle: float
     inner_radius: float
     outer_radius: float
     tooth_top_distance: float
     tip_roll: float
+    shaper_tip_roll: float
 
-    # --- one point --------------------------------------------------------------------------------------------
+    # --- one point ---------------------------------------------------------------------------------------
 
     def point(self, alpha: ArrayLike, roll: ArrayLike) -> FloatArray:
         """Contact point in the space-fixed Γp, shape (..., 3) [m], from α and θs [rad]."""
+        return np.stack(np.broadcast_arrays(*self._components(alpha, roll)), axis=-1)
+
+    def position(self, alpha: ArrayLike) -> Any:
+        """Coordinate u_s along the shaper's axis where f = 0 (3-7) [m], from α [rad]."""
+        return self.base_radius * self.cone_cotangent / np.cos(alpha)
+
+    @property
+    def cone_cotangent(self) -> float:
+        """Cot γ_s of the shaper's pitch cone (3-16)."""
         s = meshing
-        function = s.compiled(s.contact_point, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
-        components = function(alpha, roll, self.base_radius, self.gear_ratio, self.shaft_angle)
-        return np.stack(np.broadcast_arrays(*components), axis=-1)
+        function = s.compiled(s.pointing_cone_angle_cotangent, s.m_2s, s.gamma)
+        return float(function(self.gear_ratio, self.shaft_angle))
 
     def radial_position(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
         """−y_p [m], along the gear plane in the plane of both axes."""
@@ -120,20 +134,18 @@ class ContactRegion:
         function = s.compiled(s.contact_line_speed, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
         return function(alpha, roll, self.base_radius, self.gear_ratio, self.shaft_angle)
 
-    # --- corners ----------------------------------------------------------------------------------------------
+    # --- corners -----------------------------------------------------------------------------------------
 
     def edge_angle(self, radius: float, roll: float) -> float:
         """Local pressure angle at −y_p = `radius` on the profile point `roll` [rad]."""
-        # Next to the root of the tooth −y_p may fall with α before it rises: the branch in use is the rising one.
+        # Next to α = 0, −y_p may fall before it rises: the branch in use is the rising one.
         lowest = self._lowest_angle(roll)
         return root(lambda alpha: float(self.radial_position(alpha, roll)) - radius, lowest, _STEEPEST)
 
     def _lowest_angle(self, roll: float) -> float:
         """Where −y_p is least at constant θs: cot γs sin α / cos² α = cot γ (θs cos α − sin α)."""
         cotangent = 1.0 / math.tan(self.shaft_angle)
-        cone = (1.0 + self.gear_ratio * math.cos(self.shaft_angle)) / (
-            self.gear_ratio * math.sin(self.shaft_angle)
-        )
+        cone = self.cone_cotangent
 
         def slope(alpha: float) -> float:
             fall = cotangent * (roll * math.cos(alpha) - math.sin(alpha))
@@ -150,7 +162,7 @@ class ContactRegion:
         return root(excess, 0.0, 2.0) if excess(0.0) < 0.0 else 0.0
 
     def _top_angle(self, roll: float) -> float:
-        """Local pressure angle of the tooth top on the profile point `roll` > 0, on its rising branch [rad]."""
+        """Local pressure angle of the tooth top on the profile point `roll` > 0, rising branch [rad]."""
 
         def excess(alpha: float) -> float:
             return float(self.depth(alpha, roll)) - self.tooth_top_distance
@@ -163,8 +175,8 @@ class ContactRegion:
         roll = self.top_roll(self.outer_radius)
         if roll >= self.tip_roll:
             raise ValueError(
-                f"outer_radius={self.outer_radius:.6g} m is out of the pinion's reach: the tooth top lies at a "
-                f"roll angle of {roll:.4g} rad there, the pinion's tip at {self.tip_roll:.4g} rad"
+                f"outer_radius={self.outer_radius:.6g} m is out of the pinion's reach: the tooth top lies at "
+                f"a roll angle of {roll:.4g} rad there, the pinion's tip at {self.tip_roll:.4g} rad"
             )
         return self.edge_angle(self.outer_radius, roll) - roll
 
@@ -203,7 +215,7 @@ class ContactRegion:
 
         return root(excess, 0.0, _STEEPEST)
 
-    # --- whole lines ------------------------------------------------------------------------------------------
+    # --- whole lines -------------------------------------------------------------------------------------
 
     def line_ends(self, c: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Local pressure angles at the two ends of the contact lines, each of the shape of `c` [rad].
@@ -228,30 +240,26 @@ class ContactRegion:
 
     def length(self, c: ArrayLike, lower: FloatArray, upper: FloatArray) -> FloatArray:
         """Arc length of contact lines between two local pressure angles [m], shape of `c`."""
-        return (upper - lower) * self._part(
-            np.asarray(c, dtype=np.float64), lower, upper, np.ones_like(lower)
-        )
+        whole = np.ones_like(lower)
+        return (upper - lower) * self._mean_speed(np.asarray(c, dtype=np.float64), lower, upper, whole)
 
-    def _part(self, c: FloatArray, lower: FloatArray, upper: FloatArray, end: FloatArray) -> FloatArray:
-        """Integral of the line speed over the fraction 0 … `end` of the interval."""
-        alpha = (lower + (upper - lower) * end)[..., None] * _NODES + lower[..., None] * (1.0 - _NODES)
+    def _mean_speed(self, c: FloatArray, lower: FloatArray, upper: FloatArray, end: FloatArray) -> FloatArray:
+        """Integral of the line speed over the fraction 0 … `end` of the interval taken as 0 … 1."""
+        alpha = lower[..., None] + ((upper - lower) * end)[..., None] * _NODES
         speed = self.line_speed(alpha, alpha - c[..., None])
-        return end * np.asarray(speed @ _WEIGHTS)
+        return np.asarray(end * (speed @ _WEIGHTS), dtype=np.float64)
 
     def middle(self, c: ArrayLike, lower: FloatArray, upper: FloatArray) -> FloatArray:
         """Local pressure angle of the point halfway along contact lines by arc length [rad], shape of `c`."""
         offset = np.asarray(c, dtype=np.float64)
-        half = 0.5 * self._part(offset, lower, upper, np.ones_like(lower))
+        half = 0.5 * self._mean_speed(offset, lower, upper, np.ones_like(lower))
         fraction = np.full(lower.shape, 0.5)
-        # The integrand is positive and varies slowly: Newton's rule converges at once, also on zero length.
+        # The integrand is positive and varies slowly: Newton's rule settles at once, also on zero length.
         for _ in range(20):
             alpha = lower + (upper - lower) * fraction
-            step = (self._part(offset, lower, upper, fraction) - half) / self.line_speed(
-                alpha, alpha - offset
-            )
+            miss = self._mean_speed(offset, lower, upper, fraction) - half
+            step = miss / self.line_speed(alpha, alpha - offset)
             fraction = fraction - step
-            if np.all(np.abs(step) < 1e-15):
-                break
-        else:
-            raise RuntimeError(f"midpoint search did not settle: last step {np.max(np.abs(step)):.3g}")
-        return lower + (upper - lower) * fraction
+            if np.all(np.abs(step) < 4e-15):
+                return np.asarray(lower + (upper - lower) * fraction, dtype=np.float64)
+        raise RuntimeError(f"midpoint search did not settle: last step {np.max(np.abs(step)):.3g}")

@@ -1,7 +1,7 @@
 """Geometry of a face-gear drive: limits, tooth surfaces, contact lines, contact ratios (chapter 3).
 
-The shaper is identical to the pinion but for its addendum. Conventions, in units of the module 1/P_d: addendum
-of pinion and face gear 1.0, addendum of the shaper 1.25, dedendum 1.25.
+The shaper is identical to the pinion but for its addendum. Conventions, in units of the module 1/P_d:
+addendum of pinion and face gear 1.0, addendum of the shaper 1.25, dedendum 1.25.
 """
 
 import math
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from facegear import parameters
 from facegear.contact import ContactRegion, root
+from facegear.flanks import ContactLines, PinionFlank, ToothFlank, pinion_flank, tooth_flank, top_thickness
 from facegear.parameters import FloatArray
 from facegear.symbolic import meshing
 
@@ -49,8 +50,8 @@ class Drive:
     TypeError
         A tooth number that is not an integer, or a length or angle that is not a number.
     ValueError
-        A value outside its range; a shaper tooth pointed below its addendum circle (too few teeth); undercutting
-        that starts outside the pointing radius, so that no face width is left.
+        A value outside its range; a shaper tooth pointed below its addendum circle (too few teeth);
+        undercutting that reaches beyond the pointing radius, so that no face width is left.
     """
 
     pinion_teeth: int
@@ -78,8 +79,9 @@ class Drive:
         if self.inner_limit >= self.outer_limit:
             raise ValueError(
                 f"pinion_teeth={self.pinion_teeth}, gear_teeth={self.gear_teeth} leave no face width: "
-                f"undercutting reaches out to {self.inner_limit:.6g} m, pointing in to {self.outer_limit:.6g} m "
-                f"along the shaper's axis; take other tooth numbers, or a pressure angle nearer to 25°"
+                f"undercutting reaches out to {self.inner_limit:.6g} m, pointing in to "
+                f"{self.outer_limit:.6g} m along the shaper's axis; take other tooth numbers, "
+                f"or a pressure angle nearer to 25°"
             )
 
     # --- circles and angles of pinion and shaper ------------------------------------------------------------
@@ -251,19 +253,21 @@ class Drive:
         """Contact ratio of the sweep of the true contact lines, N_s (φ_in − φ_out)/2π."""
         return (self.entry_rotation - self.exit_rotation) * self.pinion_teeth / (2.0 * math.pi)
 
-    # --- contact lines --------------------------------------------------------------------------------------
+    # --- contact lines ------------------------------------------------------------------------------------
 
     @cached_property
     def contact_region(self) -> ContactRegion:
         """Where pinion and face-gear tooth touch during a mesh cycle."""
         return ContactRegion(
             base_radius=self.base_radius,
+            space_half_angle=self.space_half_angle,
             gear_ratio=self.gear_ratio,
             shaft_angle=self.shaft_angle,
             inner_radius=self.inner_radius,
             outer_radius=self.outer_radius,
             tooth_top_distance=self.tooth_top_distance,
             tip_roll=self.pinion_tip_roll,
+            shaper_tip_roll=self.shaper_tip_roll,
         )
 
     @property
@@ -281,8 +285,8 @@ class Drive:
         """Pinion rotations between entry and exit where an end of the contact line changes edge [rad]."""
         return tuple(c - self.space_half_angle for c in self.contact_region.kinks)
 
-    def contact_lines(self, rotation: ArrayLike) -> "ContactLines":
-        """Contact lines at pinion rotations φs between φ_out and φ_in.
+    def contact_lines(self, rotation: ArrayLike) -> ContactLines:
+        """Contact lines of one tooth pair at pinion rotations φs between φ_out and φ_in.
 
         Parameters
         ----------
@@ -307,72 +311,12 @@ class Drive:
                 f"entry_rotation={self.entry_rotation:.6g} rad, got {phi[outside].flat[0]:.6g}"
             )
         lower, upper = self.contact_region.line_ends(phi + self.space_half_angle)
-        return ContactLines(self, phi, lower, upper)
+        return ContactLines(self.contact_region, phi, lower, upper)
 
     # --- tooth surfaces -------------------------------------------------------------------------------------
 
-    def shaper_flank(self, position: ArrayLike, roll: ArrayLike, flank: int = 1) -> FloatArray:
-        """Points of a flank of pinion or shaper in its own frame Γs (3-2).
-
-        Parameters
-        ----------
-        position : array_like
-            u_s along the axis [m].
-        roll : array_like
-            θs [rad], broadcast against `position`.
-        flank : {1, -1}
-            Side of the tooth space: x_s > 0 for 1, its mirror image for −1.
-
-        Returns
-        -------
-        ndarray, shape (..., 3)
-            Coordinates [m].
-        """
-        s = meshing
-        function = s.compiled(s.shaper_surface, s.u_s, s.theta_s, s.theta_0s, s.r_bs)
-        components = function(
-            parameters.finite_array("position", position, "m"),
-            parameters.finite_array("roll", roll, "rad"),
-            self.space_half_angle,
-            self.base_radius,
-        )
-        return np.stack(np.broadcast_arrays(*components), axis=-1) * _mirror(flank)
-
-    def shaper_to_gear(self, points: ArrayLike, rotation: ArrayLike) -> FloatArray:
-        """Carry points from the turning shaper Γs to the turning face gear Γ2 (3-4), φ2 = m_2s φs.
-
-        Parameters
-        ----------
-        points : array_like, shape (..., 3)
-            Coordinates in Γs [m].
-        rotation : array_like, shape (...)
-            φs [rad].
-
-        Returns
-        -------
-        ndarray, shape (..., 3)
-        """
-        s = meshing
-        function = s.compiled(s.rotation_2s, s.phi_s, s.phi_2, s.gamma_m)
-        phi = np.asarray(rotation, dtype=np.float64)
-        return _rotate(function(phi, self.gear_ratio * phi, math.pi - self.shaft_angle), points)
-
-    def shaper_to_fixed(self, points: ArrayLike, rotation: ArrayLike) -> FloatArray:
-        """Carry points from the turning shaper Γs to the space-fixed Γp; shapes as in `shaper_to_gear`."""
-        s = meshing
-        function = s.compiled(s.rotation_2s, s.phi_s, s.phi_2, s.gamma_m)
-        return _rotate(
-            function(np.asarray(rotation, dtype=np.float64), 0.0, math.pi - self.shaft_angle), points
-        )
-
-    def gear_to_fixed(self, points: ArrayLike, rotation: ArrayLike) -> FloatArray:
-        """Carry points from the face gear Γ2 turned by φ2 = m_2s φs to Γp; shapes as in `shaper_to_gear`."""
-        s = meshing
-        function = s.compiled(s.rotation_2p, s.phi_2)
-        return _rotate(function(-self.gear_ratio * np.asarray(rotation, dtype=np.float64)), points)
-
-    def tooth_flank(self, along: int = 33, across: int = 17, flank: int = 1) -> "ToothFlank":
-        """Flank of a face-gear tooth as the shaper generates it, between tooth top and shaper tip (3-5).
+    def tooth_flank(self, along: int = 33, across: int = 17, flank: int = 1) -> ToothFlank:
+        """Flank of a face-gear tooth as the shaper generates it, from tooth top to shaper tip (3-5).
 
         Parameters
         ----------
@@ -393,27 +337,27 @@ class Drive:
         TypeError, ValueError
             A number of points that is not an integer of at least 2, or a flank other than 1 and −1.
         """
-        n = parameters.integer_at_least("along", along, 2)
-        k = parameters.integer_at_least("across", across, 2)
-        region, sign = self.contact_region, _mirror(flank)
-        radii = np.linspace(self.inner_radius, self.outer_radius, n)
-        top = np.array([region.top_roll(radius) for radius in radii])
-        fraction = np.linspace(0.0, 1.0, k)
-        roll = top[:, None] + (self.shaper_tip_roll - top[:, None]) * fraction
-        alpha = np.array(
-            [[region.edge_angle(r, th) for th in line] for r, line in zip(radii, roll, strict=True)]
-        )
-        rotation = alpha - roll - self.space_half_angle
-        position = self.base_radius * self.cone_cotangent / np.cos(alpha)
-        points = self.shaper_to_gear(self.shaper_flank(position, roll), rotation) * sign
-        # The mirror image is generated at the opposite rotations.
-        return ToothFlank(points, position, roll, rotation * sign[0])
+        return tooth_flank(self.contact_region, along, across, flank)
+
+    def pinion_flank(self, along: int = 2, across: int = 17, flank: int = 1) -> PinionFlank:
+        """Flank of the pinion's tooth space, from the base circle (or dedendum circle) to the tip (3-2).
+
+        Parameters and errors as in `tooth_flank`; `along` counts points along the axis, over the face width.
+
+        Returns
+        -------
+        PinionFlank
+        """
+        offset = self.pitch_radius / math.tan(self.shaft_angle)
+        ends = (self.inner_limit + offset, self.outer_limit + offset)
+        first = self._roll_angle(max(self.dedendum_radius, self.base_radius))
+        return pinion_flank(self.contact_region, ends, first, along, across, flank)
 
     def top_thickness(self, radius: ArrayLike) -> FloatArray:
         """Thickness of the true face-gear tooth at its top, an arc about the gear's axis [m].
 
-        At R2 it is small but not zero: (3-14) to (3-16) replace the flanks by their tangents in a section normal
-        to the shaper's axis, and the true flanks are curved.
+        At R2 it is small but not zero: (3-14) to (3-16) replace the flanks by their tangents in a section
+        normal to the shaper's axis, and the true flanks are curved.
 
         Parameters
         ----------
@@ -423,129 +367,17 @@ class Drive:
         Returns
         -------
         ndarray
-            Shape of `radius`; negative where the flanks have crossed.
+            Shape of `radius`; negative where the flanks have crossed, that is where the tooth is pointed below
+            its nominal top.
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric, not finite, or inside R1.
         """
         radii = parameters.finite_array("radius", radius, "m")
-        region = self.contact_region
-
-        def thickness(r: float) -> float:
-            roll = region.top_roll(r)
-            alpha = region.edge_angle(r, roll)
-            x, y, _ = region.point(alpha, roll)
-            gear_angle = math.atan2(x, -y) - self.gear_ratio * (alpha - roll - self.space_half_angle)
-            return 2.0 * math.hypot(x, y) * gear_angle
-
-        return np.array([thickness(r) for r in radii.flat]).reshape(radii.shape)
-
-
-def _mirror(flank: int) -> FloatArray:
-    if flank not in (1, -1):
-        raise ValueError(f"flank must be 1 or -1, got {flank!r}")
-    return np.array([float(flank), 1.0, 1.0])
-
-
-def _rotate(matrix_entries: list[FloatArray], points: ArrayLike) -> FloatArray:
-    """Multiply points by rotation matrices given as nine arrays, row by row."""
-    entries = np.stack(np.broadcast_arrays(*matrix_entries), axis=-1)
-    matrices = entries.reshape(*entries.shape[:-1], 3, 3)
-    return np.einsum("...ij,...j->...i", matrices, np.asarray(points, dtype=np.float64))
-
-
-@dataclass(frozen=True)
-class ToothFlank:
-    """A grid on a flank of a face-gear tooth.
-
-    Parameters
-    ----------
-    points : ndarray, shape (along, across, 3)
-        Coordinates in the face gear's frame Γ2 [m].
-    position : ndarray, shape (along, across)
-        u_s where each point is generated [m].
-    roll : ndarray, shape (along, across)
-        θs of the shaper's point that generates it [rad].
-    rotation : ndarray, shape (along, across)
-        φs at which it does [rad].
-    """
-
-    points: FloatArray
-    position: FloatArray
-    roll: FloatArray
-    rotation: FloatArray
-
-
-@dataclass(frozen=True)
-class ContactLines:
-    """Contact lines of one tooth pair at given pinion rotations.
-
-    Parameters
-    ----------
-    drive : Drive
-    rotation : ndarray, shape S
-        φs [rad].
-    lower, upper : ndarray, shape S
-        Local pressure angles α at the two ends [rad]; the upper end lies further out.
-    """
-
-    drive: Drive
-    rotation: FloatArray
-    lower: FloatArray
-    upper: FloatArray
-
-    @property
-    def _offset(self) -> FloatArray:
-        return self.rotation + self.drive.space_half_angle
-
-    @cached_property
-    def length(self) -> FloatArray:
-        """Arc lengths [m], shape S; zero at entry and exit."""
-        return self.drive.contact_region.length(self._offset, self.lower, self.upper)
-
-    @cached_property
-    def middle(self) -> FloatArray:
-        """Local pressure angles of the midpoints by arc length [rad], shape S."""
-        return self.drive.contact_region.middle(self._offset, self.lower, self.upper)
-
-    @cached_property
-    def contact_point(self) -> FloatArray:
-        """Midpoints in the space-fixed frame Γp, shape S + (3,) [m]."""
-        return self.drive.contact_region.point(self.middle, self.middle - self._offset)
-
-    @property
-    def radius(self) -> FloatArray:
-        """Distance r of the contact points from the gear's axis [m], shape S."""
-        return np.hypot(self.contact_point[..., 0], self.contact_point[..., 1])
-
-    @property
-    def angle(self) -> FloatArray:
-        """Angle θ of the contact points on the gear plane, space-fixed, from the pinion's axis [rad], shape S."""
-        return np.arctan2(self.contact_point[..., 0], -self.contact_point[..., 1])
-
-    def shaper_points(self, count: int = 33, flank: int = 1) -> FloatArray:
-        """Points along the lines in the pinion's frame Γs, equally spaced in α.
-
-        Parameters
-        ----------
-        count : int
-            Points a line, at least 2.
-        flank : {1, -1}
-            Side of the tooth; the other is its mirror image, met at the opposite rotation.
-
-        Returns
-        -------
-        ndarray, shape S + (count, 3)
-            Coordinates [m].
-        """
-        fraction = np.linspace(0.0, 1.0, parameters.integer_at_least("count", count, 2))
-        alpha = self.lower[..., None] * (1.0 - fraction) + self.upper[..., None] * fraction
-        position = self.drive.base_radius * self.drive.cone_cotangent / np.cos(alpha)
-        return self.drive.shaper_flank(position, alpha - self._offset[..., None], flank)
-
-    def gear_points(self, count: int = 33, flank: int = 1) -> FloatArray:
-        """The same points in the face gear's frame Γ2, where they lie on the tooth flank."""
-        points = self.shaper_points(count, flank)
-        return self.drive.shaper_to_gear(points, flank * self.rotation[..., None])
-
-    def fixed_points(self, count: int = 33, flank: int = 1) -> FloatArray:
-        """The same points in the space-fixed frame Γp."""
-        points = self.shaper_points(count, flank)
-        return self.drive.shaper_to_fixed(points, flank * self.rotation[..., None])
+        if np.any(radii < self.inner_radius * (1.0 - 1e-12)):
+            raise ValueError(
+                f"radius must be at least inner_radius={self.inner_radius:.6g} m, got {radii.min():.6g} m"
+            )
+        return np.array([top_thickness(self.contact_region, r) for r in radii.flat]).reshape(radii.shape)

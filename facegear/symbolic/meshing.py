@@ -81,7 +81,7 @@ def shaper_surface() -> Any:
 
 @cache
 def shaper_normal() -> Any:
-    """Unit normal n_s of the shaper's flank in Γs (3-3): ∂r/∂θ × ∂r/∂u over its length, shape (3, 1)."""
+    """Derive the normal n_s of the shaper's flank in Γs, of length one (3-3): ∂r/∂θ × ∂r/∂u, shape (3, 1)."""
     surface = shaper_surface()
     cross = surface.diff(theta_s).cross(surface.diff(u_s)).expand()
     length = sp.sqrt(sp.trigsimp((cross.T * cross)[0]))
@@ -145,8 +145,8 @@ def relative_velocity() -> Any:
 def equation_of_meshing() -> Any:
     """Equation of meshing f(u_s, θ_s, φ_s) = 0 (3-7) [m].
 
-    The relative velocity is normal to the flank's normal. The sign is that of (3-7), which goes with the normal
-    (cos, sin, 0); the cross product (3-3) points the other way. Divided by Ω_s.
+    The relative velocity is normal to the flank's normal. The sign is that of (3-7), which goes with the
+    normal (cos, sin, 0); the cross product (3-3) points the other way. Divided by Ω_s.
     """
     product = -(shaper_normal().T * relative_velocity())[0] / Omega_s
     collected = sp.collect(sp.expand(product), [r_bs, u_s], evaluate=False)
@@ -180,7 +180,7 @@ def undercut_matrices() -> tuple[Any, Any, Any]:
 
 @cache
 def undercut_determinants() -> tuple[Any, Any, Any]:
-    """Determinants Δ1, Δ2, Δ3 of (3-9) to (3-11), not yet restricted to f = 0."""
+    """Determine Δ1, Δ2, Δ3 of (3-9) to (3-11), not yet restricted to f = 0."""
     first, second, third = (matrix.det(method="berkowitz") for matrix in undercut_matrices())
     return first, second, third
 
@@ -198,7 +198,7 @@ def undercut_determinants_on_meshing() -> tuple[Any, Any, Any]:
 
 
 def _on_meshing(expression: Any) -> Any:
-    """Restrict to f = 0 and to algebraic symbols; polynomial steps only, which take a fraction of a second."""
+    """Restrict to f = 0 and to algebraic symbols; polynomial steps only, a fraction of a second."""
     # Sines and cosines of the two independent angles become symbols before anything is expanded.
     whole = sp.Symbol("beta", real=True)  # θ0s + θs
     cosine = sp.Symbol("cosine", positive=True)  # of the local pressure angle φs + θ0s + θs
@@ -303,7 +303,7 @@ def contact_line_speed() -> Any:
 
 @cache
 def pointing_cone_angle_cotangent() -> Any:
-    """cot γ_s of the shaper's pitch cone (3-16): u_s cos α / r_bs where f = 0, in m_2s and the shaft angle γ."""
+    """Cot γ_s of the shaper's pitch cone (3-16): u_s cos α / r_bs where f = 0, in m_2s and γ."""
     at_rest = meshing_position().subs(phi_s, alpha - theta_0s - theta_s).subs(gamma_m, sp.pi - gamma)
     return sp.cancel(sp.cos(alpha) * at_rest / r_bs)
 
@@ -313,8 +313,8 @@ def pointing_condition() -> Any:
     """Left side minus right side of the condition of pointing (3-15): α − (r_top/r_bs) sin α − θ_0s.
 
     In the section Π2 normal to the shaper's axis the face-gear flank is replaced by its tangent at φ_s = 0,
-    where α = θ_0s + θ_s. Both flanks' tangents meet in the tooth's plane of symmetry (x = 0); pointing is where
-    that happens at the tooth top, y = −r_top. With r_top = (N_s − 2)/(2 P_d) this is (3-15).
+    where α = θ_0s + θ_s. Both flanks' tangents meet in the tooth's plane of symmetry (x = 0); pointing is
+    where that happens at the tooth top, y = −r_top. With r_top = (N_s − 2)/(2 P_d) this is (3-15).
     """
     surface, normal = shaper_surface(), shaper_normal()
     top = sp.Matrix([0, -r_top, u_s])

@@ -1,0 +1,414 @@
+"""Meshing kinematics: contact point, contact centroid and skew line against time (chapter 3, 3.6 and 3.7).
+
+Time is counted in mesh periods T0 (3-20): x = t/T0. A tooth pair enters at every whole number and stays in mesh
+for cr mesh periods (3-19), so that P = ceil(cr) pairs are numbered 0 … P − 1 by age: at time x the pair j has
+been in mesh for frac(x) + j periods, if that is not more than cr. Nothing here depends on the speed.
+
+The contact ratio is an argument: Tregold's `drive.contact_ratio`, the default and the dissertation's choice,
+compresses the whole sweep of the contact line into Tregold's shorter mesh time, rotation included;
+`drive.geometric_contact_ratio` lets the pinion turn as fast as the sweep needs.
+
+Positions are smooth on the pieces between breakpoints. `..._on_piece` evaluates one piece up to and including
+both its ends, each as the limit from inside, so that a fit on Chebyshev nodes is not spoilt by the neighbour.
+"""
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear import parameters
+from facegear.geometry import Drive
+from facegear.parameters import FloatArray
+
+# Breakpoints closer than this, in mesh periods, are the same instant but for rounding.
+_SAME_INSTANT = 1e-12
+# Total angles within this fraction of a pitch of a whole number of teeth count as whole.
+_WHOLE_PITCH = 1e-9
+
+
+class PairStates(NamedTuple):
+    """Tooth pairs at instants of shape S; row j is the pair that entered j mesh periods before frac(x) = 0.
+
+    Where a pair is out of contact its radius, angle and length are 0.
+
+    Attributes
+    ----------
+    in_contact : ndarray of bool, shape (P,) + S
+    radius : ndarray, shape (P,) + S
+        r_j of the contact point [m].
+    angle : ndarray, shape (P,) + S
+        θ_j, space-fixed about the gear's axis from the pinion's axis [rad].
+    length : ndarray, shape (P,) + S
+        l_j of the contact line [m].
+    """
+
+    in_contact: NDArray[np.bool_]
+    radius: FloatArray
+    angle: FloatArray
+    length: FloatArray
+
+
+class Centroid(NamedTuple):
+    """Contact centroid (3-21) at instants of shape S.
+
+    Attributes
+    ----------
+    radius : ndarray, shape S
+        r_c [m].
+    angle : ndarray, shape S
+        θ_c, space-fixed about the gear's axis from the pinion's axis [rad].
+    """
+
+    radius: FloatArray
+    angle: FloatArray
+
+
+class SkewStates(NamedTuple):
+    """Tooth pairs on the skew line (3-22) at instants of shape S.
+
+    Attributes
+    ----------
+    in_contact : ndarray of bool, shape (P,) + S
+    radius : ndarray, shape (P,) + S
+        r_j [m]; 0 out of contact.
+    slope : ndarray, shape (P,) + S
+        dr_j/dx [m per mesh period]; 0 out of contact. Divide by T0 for the derivative to time.
+    """
+
+    in_contact: NDArray[np.bool_]
+    radius: FloatArray
+    slope: FloatArray
+
+
+def _checked_ratio(drive: Drive, contact_ratio: float | None) -> float:
+    ratio = drive.contact_ratio if contact_ratio is None else contact_ratio
+    hint = "below 1 there are instants without any tooth in mesh"
+    return parameters.within("contact_ratio", ratio, 1.0, float(drive.pinion_teeth), hint=hint)
+
+
+def _pairs_in_mesh(contact_ratio: float) -> int:
+    return math.ceil(contact_ratio)
+
+
+def _merged(instants: list[float]) -> tuple[float, ...]:
+    """Fractions of a mesh period in ascending order from 0, without repetitions."""
+    fractions = sorted(instant - math.floor(instant) for instant in instants)
+    kept = [0.0]
+    for fraction in fractions:
+        if fraction - kept[-1] > _SAME_INSTANT and 1.0 - fraction > _SAME_INSTANT:
+            kept.append(fraction)
+    return tuple(kept)
+
+
+def _ages(x: ArrayLike, pairs: int) -> FloatArray:
+    """Mesh periods since entry of each pair, shape (pairs,) + S."""
+    instants = parameters.finite_array("x", x)
+    start = instants - np.floor(instants)
+    return np.stack([start + j for j in range(pairs)])
+
+
+def _piece(
+    breakpoints: tuple[float, ...], contact_ratio: float, index: int, x: ArrayLike
+) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Ages (P,) + S of the pairs on one piece, with x in [−1, 1], and which pairs are in mesh there (P,)."""
+    piece = parameters.integer_at_least("index", index, 0)
+    if piece >= len(breakpoints):
+        raise ValueError(f"index must be below {len(breakpoints)}, the number of pieces, got {index!r}")
+    local = parameters.finite_array("x", x)
+    if np.any(np.abs(local) > 1.0):
+        raise ValueError(f"x must lie in [-1, 1] on a piece, got {local.flat[np.argmax(np.abs(local))]!r}")
+    start, end = (*breakpoints, 1.0)[piece : piece + 2]
+    fraction = 0.5 * (start * (1.0 - local) + end * (1.0 + local))
+    pairs = np.arange(_pairs_in_mesh(contact_ratio))
+    ages = fraction + pairs.reshape(-1, *([1] * fraction.ndim))
+    # No pair enters or leaves inside a piece: its middle decides for the whole.
+    in_mesh = 0.5 * (start + end) + pairs < contact_ratio
+    return ages, in_mesh
+
+
+@dataclass(frozen=True)
+class ContactPath:
+    """Path of the true contact points, the midpoints of the contact lines by arc length.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more; default Tregold's, `drive.contact_ratio`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
+
+    drive: Drive
+    contact_ratio: float = field(default=None)  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "contact_ratio", _checked_ratio(self.drive, self.contact_ratio))
+
+    @property
+    def pairs(self) -> int:
+        """P = ceil(cr), the greatest number of tooth pairs in mesh at once."""
+        return _pairs_in_mesh(self.contact_ratio)
+
+    @cached_property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Fractions of T0 in [0, 1), ascending from 0, between which the positions are smooth.
+
+        0 (a pair enters), cr − ⌊cr⌋ (a pair leaves), and the instants where an end of a contact line changes
+        its bounding edge, all in closed form but for the corners of the contact region.
+        """
+        entry, sweep = self.drive.entry_rotation, self.drive.entry_rotation - self.drive.exit_rotation
+        kinks = [(entry - kink) / sweep * self.contact_ratio for kink in self.drive.kink_rotations]
+        return _merged([0.0, self.contact_ratio, *kinks])
+
+    def contact_point(self, fraction: ArrayLike) -> PairStates:
+        """Contact point of one tooth pair against the fraction of its own mesh time cr T0.
+
+        Parameters
+        ----------
+        fraction : array_like, shape S
+            From 0 at first contact (outer edge) to 1 at last contact.
+
+        Returns
+        -------
+        PairStates
+            Fields of shape S; always in contact.
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric, not finite, or outside [0, 1].
+        """
+        own = parameters.finite_array("fraction", fraction)
+        if np.any((own < 0.0) | (own > 1.0)):
+            bad = own[(own < 0.0) | (own > 1.0)].flat[0]
+            raise ValueError(f"fraction must lie in [0, 1] of the pair's mesh time, got {bad!r}")
+        rotation = self.drive.entry_rotation * (1.0 - own) + self.drive.exit_rotation * own
+        lines = self.drive.contact_lines(rotation)
+        return PairStates(np.ones(own.shape, dtype=bool), lines.radius, lines.angle, lines.length)
+
+    def pair_states(self, x: ArrayLike) -> PairStates:
+        """Contact points of all pairs at times x [mesh periods], any real numbers of shape S."""
+        ages = _ages(x, self.pairs)
+        return self._states(ages, ages <= self.contact_ratio)
+
+    def centroid(self, x: ArrayLike) -> Centroid:
+        """Contact centroid (3-21) at times x [mesh periods], any real numbers of shape S; period 1.
+
+        Raises
+        ------
+        TypeError, ValueError
+            `x` is not numeric or not finite.
+        """
+        return _weighted(self.pair_states(x))
+
+    def centroid_on_piece(self, index: int, x: ArrayLike) -> Centroid:
+        """Contact centroid (3-21) on one smooth piece, both ends included.
+
+        Parameters
+        ----------
+        index : int
+            Piece between `breakpoints[index]` and the next one (or 1).
+        x : array_like, shape S
+            From −1 at its start to 1 at its end.
+
+        Returns
+        -------
+        Centroid
+
+        Raises
+        ------
+        TypeError, ValueError
+            No such piece, or `x` outside [−1, 1].
+        """
+        return _weighted(self.pair_states_on_piece(index, x))
+
+    def pair_states_on_piece(self, index: int, x: ArrayLike) -> PairStates:
+        """Contact points of all pairs on one smooth piece; parameters and errors as in `centroid_on_piece`."""
+        ages, in_mesh = _piece(self.breakpoints, self.contact_ratio, index, x)
+        mask = np.broadcast_to(in_mesh.reshape(-1, *([1] * (ages.ndim - 1))), ages.shape)
+        return self._states(ages, mask)
+
+    def overlaid(self, count: int, rotation: ArrayLike) -> PairStates:
+        """Contact points of successive tooth pairs against the face gear's rotation (Fig. 3.9).
+
+        Parameters
+        ----------
+        count : int
+            Number of pairs; pair j enters when the face gear has turned by j θ_N.
+        rotation : array_like, shape S
+            Rotation of the face gear Ω2 t since the first pair entered [rad].
+
+        Returns
+        -------
+        PairStates
+            Fields of shape (count,) + S.
+
+        Raises
+        ------
+        TypeError, ValueError
+            `count` is not an integer of at least 1, or `rotation` not finite numbers.
+        """
+        number = parameters.integer_at_least("count", count, 1)
+        periods = parameters.finite_array("rotation", rotation, "rad") / self.drive.angular_pitch
+        ages = np.stack([periods - j for j in range(number)])
+        return self._states(ages, (ages >= 0.0) & (ages <= self.contact_ratio))
+
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
+        # Dividing an age by cr may pass 1 by the last digit at the end of a piece.
+        point = self.contact_point(np.minimum(ages[in_mesh] / self.contact_ratio, 1.0))
+        radius, angle, length = (np.zeros(ages.shape) for _ in range(3))
+        radius[in_mesh], angle[in_mesh], length[in_mesh] = point.radius, point.angle, point.length
+        return PairStates(np.asarray(in_mesh), radius, angle, length)
+
+
+def _weighted(states: PairStates) -> Centroid:
+    """Mean position weighted by the lengths of the contact lines (3-21)."""
+    total = states.length.sum(axis=0)
+    if np.any(total == 0.0):
+        # Only a contact ratio of exactly 1 does this: one pair leaves as the next enters, both of zero length.
+        raise ValueError("contact_ratio must exceed 1 for the centroid to exist at every instant")
+    weights = states.length / total
+    return Centroid((weights * states.radius).sum(axis=0), (weights * states.angle).sum(axis=0))
+
+
+@dataclass(frozen=True)
+class SkewLine:
+    """Contact points on the straight line from R2 to R1 in time, pair by pair (3-22).
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more; default Tregold's, `drive.contact_ratio`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
+
+    drive: Drive
+    contact_ratio: float = field(default=None)  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "contact_ratio", _checked_ratio(self.drive, self.contact_ratio))
+
+    @property
+    def pairs(self) -> int:
+        """P = ceil(cr), the greatest number of tooth pairs in mesh at once."""
+        return _pairs_in_mesh(self.contact_ratio)
+
+    @cached_property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Fractions of T0 in [0, 1), ascending from 0, where a pair enters (0) or leaves (cr − ⌊cr⌋)."""
+        return _merged([0.0, self.contact_ratio])
+
+    def pair_states(self, x: ArrayLike) -> SkewStates:
+        """Radii of all pairs at times x [mesh periods], any real numbers of shape S; period 1."""
+        ages = _ages(x, self.pairs)
+        return self._states(ages, ages <= self.contact_ratio)
+
+    def pair_states_on_piece(self, index: int, x: ArrayLike) -> SkewStates:
+        """Radii of all pairs on one piece, both ends included, as limits from inside.
+
+        Parameters
+        ----------
+        index : int
+            Piece between `breakpoints[index]` and the next one (or 1).
+        x : array_like, shape S
+            From −1 at its start to 1 at its end.
+
+        Returns
+        -------
+        SkewStates
+
+        Raises
+        ------
+        TypeError, ValueError
+            No such piece, or `x` outside [−1, 1].
+        """
+        ages, in_mesh = _piece(self.breakpoints, self.contact_ratio, index, x)
+        mask = np.broadcast_to(in_mesh.reshape(-1, *([1] * (ages.ndim - 1))), ages.shape)
+        return self._states(ages, mask)
+
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> SkewStates:
+        travel = self.drive.inner_radius - self.drive.outer_radius
+        radius = np.where(in_mesh, self.drive.outer_radius + travel * ages / self.contact_ratio, 0.0)
+        slope = np.where(in_mesh, travel / self.contact_ratio, 0.0)
+        return SkewStates(np.asarray(in_mesh), radius, slope)
+
+
+def mesh_period(drive: Drive, gear_speed: float) -> float:
+    """Mesh period T0 = 2π/(N2 Ω2) [s] (3-20).
+
+    Parameters
+    ----------
+    drive : Drive
+    gear_speed : float
+        Ω2 of the face gear [rad/s], greater than 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `gear_speed` is not a number, not finite, zero or negative.
+    """
+    speed = parameters.positive("gear_speed", gear_speed, "rad/s")
+    return 2.0 * math.pi / (drive.gear_teeth * speed)
+
+
+class PhaseSplit(NamedTuple):
+    """Total angles between pinions split into whole teeth and a phase, shape S (5-1, 5-2).
+
+    Attributes
+    ----------
+    teeth : ndarray of int
+        ΔN2, whole face-gear teeth between the pinions.
+    positioning_angle : ndarray
+        θ_q = ΔN2 θ_N [rad].
+    phasing_angle : ndarray
+        θ_p = θ_c − θ_q, in [0, θ_N) [rad].
+    phase : ndarray
+        ψ = θ_p/θ_N, in [0, 1): the pinion's contact points at t are the first one's at t + ψ T0 (5-4).
+    """
+
+    teeth: NDArray[np.int64]
+    positioning_angle: FloatArray
+    phasing_angle: FloatArray
+    phase: FloatArray
+
+
+def phase_split(drive: Drive, pinion_angles: ArrayLike) -> PhaseSplit:
+    """Split total angles of pinions into positioning and phasing angle, and give their phases (5-1, 5-2).
+
+    Parameters
+    ----------
+    drive : Drive
+    pinion_angles : array_like, shape S
+        θ_c of each pinion from the first one [rad], any real numbers. An angle within 1e-9 of a pitch of a whole
+        number of teeth counts as whole: 120° in radians is not exact.
+
+    Returns
+    -------
+    PhaseSplit
+
+    Raises
+    ------
+    TypeError, ValueError
+        Not numeric or not finite.
+    """
+    angles = parameters.finite_array("pinion_angles", pinion_angles, "rad")
+    pitches = angles / drive.angular_pitch
+    nearest = np.rint(pitches)
+    whole = np.abs(pitches - nearest) < _WHOLE_PITCH
+    teeth = np.where(whole, nearest, np.floor(pitches))
+    phase = np.where(whole, 0.0, pitches - teeth)
+    positioning = teeth * drive.angular_pitch
+    return PhaseSplit(teeth.astype(np.int64), positioning, phase * drive.angular_pitch, phase)
