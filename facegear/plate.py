@@ -198,6 +198,7 @@ def centrifugal_stress(
     return radial, hoop
 
 
+@lru_cache(maxsize=512)
 def centrifugal_stiffness(modes: RadialModes) -> FloatArray:
     """Stiffness of the radial modes in the centrifugal stress field, over Ω² (L_n of 4-9).
 
@@ -217,7 +218,9 @@ def centrifugal_stiffness(modes: RadialModes) -> FloatArray:
     value, slope = modes(x), modes(x, derivative=1)
     n = modes.nodal_diameters
     matrix = (slope * (weights * radial)) @ slope.T + (value * (weights * n**2 * hoop / x**2)) @ value.T
-    return (matrix + matrix.T) / 2
+    symmetric: FloatArray = (matrix + matrix.T) / 2
+    symmetric.setflags(write=False)
+    return symmetric
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,230 @@
+"""Floquet multipliers of the disk in complex exponentials, (4-8) to (4-13), integrated by DOP853.
+
+A slow second route for the transverse chapters. It shares no assembly with the package: of the body it takes
+dimensions, material and the values of R_mn(r); radial derivatives, eigenvalues, all integrals and the
+centrifugal stress are computed here in another way, the coordinates are the complex η_mn for n = -N, ..., N,
+and the contact centroid comes in as a plain function of time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.integrate import solve_ivp
+
+RadialFunction = Callable[[int, int, np.ndarray], np.ndarray]
+Position = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+DEGREE = 60
+
+
+@dataclass(frozen=True, eq=False)
+class ComplexDisk:
+    """The disk: R(m, n, r) of unit norm ∫R²r dr, largest M and N, and SI dimensions and constants."""
+
+    radial: RadialFunction
+    M: int
+    N: int
+    a: float
+    b: float
+    h: float
+    E: float
+    rho: float
+    nu: float
+    xi: float
+
+    @property
+    def waves(self) -> list[int]:
+        return list(range(-self.N, self.N + 1))
+
+    @property
+    def bending_stiffness(self) -> float:
+        return self.E * self.h**3 / 12 / (1 - self.nu**2)
+
+    def _series(self, m: int, n: int) -> chebyshev.Chebyshev:
+        """R_mn as a function of s = ln r, in which it is entire."""
+        ends = [np.log(self.b), np.log(self.a)]
+        return chebyshev.Chebyshev.interpolate(lambda s: self.radial(m, n, np.exp(s)), DEGREE, ends)
+
+    def _integral(self, values_of_s: Callable[[np.ndarray], np.ndarray]) -> float:
+        """∫ f ds by Clenshaw-Curtis in s: fit, integrate the series."""
+        ends = [np.log(self.b), np.log(self.a)]
+        antiderivative = chebyshev.Chebyshev.interpolate(values_of_s, 2 * DEGREE, ends).integ(lbnd=ends[0])
+        return float(antiderivative(ends[1]))
+
+    def elastic(self, n: int) -> np.ndarray:
+        """β_n of (4-9) as Rayleigh quotients 2U/(ρh ∫R²r dr), diagonal."""
+        values = []
+        for m in range(self.M + 1):
+            R = self._series(m, n)
+            R1, R2 = R.deriv(1), R.deriv(2)
+
+            def energy(s: np.ndarray, R=R, R1=R1, R2=R2) -> np.ndarray:
+                # with d/dr = (1/r) d/ds; curvatures times r²
+                radial, hoop, twist = R2(s) - R1(s), R1(s) - n**2 * R(s), n * (R1(s) - R(s))
+                density = radial**2 + hoop**2 + 2 * self.nu * radial * hoop + 2 * (1 - self.nu) * twist**2
+                return density * np.exp(-2 * s)
+
+            norm = self._integral(lambda s, R=R: R(s) ** 2 * np.exp(2 * s))
+            values.append(self.bending_stiffness / (self.rho * self.h) * self._integral(energy) / norm)
+        return np.diag(values)
+
+    def centrifugal(self, n: int, speed: float) -> np.ndarray:
+        """L_n of (4-9). The stress is found from the displacement u = A r + B/r - (1-ν²)ρΩ²r³/(8E)."""
+        k = (1 - self.nu**2) * self.rho * speed**2 / (8 * self.E)
+        # u(b) = 0 and σ_r(a) ∝ u' + ν u/r = 0
+        A, B = np.linalg.solve(
+            [[self.b, 1 / self.b], [1 + self.nu, -(1 - self.nu) / self.a**2]],
+            [k * self.b**3, k * (3 + self.nu) * self.a**2],
+        )
+        modulus = self.E / (1 - self.nu**2)
+
+        def stresses(r: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            slope, ratio = A - B / r**2 - 3 * k * r**2, A + B / r**2 - k * r**2
+            return modulus * (slope + self.nu * ratio), modulus * (ratio + self.nu * slope)
+
+        matrix = np.empty((self.M + 1, self.M + 1))
+        for m1 in range(self.M + 1):
+            for m2 in range(self.M + 1):
+                one, two = self._series(m1, n), self._series(m2, n)
+                one_slope, two_slope = one.deriv(), two.deriv()
+
+                def integrand(s: np.ndarray, f=one, g=two, df=one_slope, dg=two_slope) -> np.ndarray:
+                    radial, hoop = stresses(np.exp(s))
+                    return radial * df(s) * dg(s) + n**2 * hoop * f(s) * g(s)
+
+                matrix[m1, m2] = self._integral(integrand) / self.rho
+        return matrix
+
+    @cached_property
+    def _elastic(self) -> list[np.ndarray]:
+        return [self.elastic(abs(n)) for n in self.waves]
+
+    @cached_property
+    def _centrifugal(self) -> list[np.ndarray]:
+        return [self.centrifugal(abs(n), 1.0) for n in self.waves]
+
+    def constant_matrices(self, speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """M0, C0, K0 of (4-11)."""
+        one = self.M + 1
+        size = one * (2 * self.N + 1)
+        M0, C0, K0 = (np.zeros((size, size), dtype=complex) for _ in range(3))
+        for place, n in enumerate(self.waves):
+            rows = slice(place * one, (place + 1) * one)
+            beta_n = self._elastic[place]
+            L_n = self._centrifugal[place] * speed**2
+            M0[rows, rows] = np.eye(one)
+            C0[rows, rows] = self.xi * beta_n + 2j * n * speed * np.eye(one)
+            K0[rows, rows] = beta_n + L_n + 1j * n * self.xi * speed * beta_n - n**2 * speed**2 * np.eye(one)
+        return M0, C0, K0
+
+    def values(self, r: float, theta: float) -> np.ndarray:
+        """R_mn(r) e^{inθ} in the order of the coordinates."""
+        radial = [[self.radial(m, abs(n), np.asarray(r)) for m in range(self.M + 1)] for n in self.waves]
+        return (np.array(radial, dtype=float) * np.exp(1j * np.array(self.waves) * theta)[:, None]).ravel()
+
+    def stiffness_at(self, r: float, speed: float) -> float:
+        """k_d by (4-14) to (4-16), with A_d in full."""
+        M0, C0, K0 = self.constant_matrices(speed)
+        zero, one = np.zeros_like(M0), np.eye(len(M0))
+        A_d = np.block([[zero, one], [-np.linalg.solve(M0, K0), -np.linalg.solve(M0, C0)]])
+        v = self.values(r, 0.3)
+        B_d = np.concatenate([np.zeros(len(v)), v.conj() / (2 * np.pi * self.rho * self.h)])
+        C_d = np.concatenate([v, np.zeros(len(v))])
+        k_d = -1 / (C_d @ np.linalg.solve(A_d, B_d))
+        assert abs(k_d.imag) < 1e-10 * abs(k_d.real), (
+            "a real disk answers a real force with a real deflection"
+        )
+        return float(k_d.real)
+
+
+@dataclass(frozen=True, eq=False)
+class Pinion:
+    """Contact centroid (r, θ) as a function of t/T0, smooth between the instants (ascending in [0, 1))."""
+
+    position: Position
+    instants: Sequence[float]
+
+
+def multipliers(
+    disk: ComplexDisk,
+    pinions: Sequence[Pinion],
+    speed: float,
+    period: float,
+    *,
+    m_p: float,
+    c_b: float,
+    k_b: float,
+    tolerance: float = 1e-12,
+) -> np.ndarray:
+    """Eigenvalues of the transition matrix of (4-12), one smooth piece of the period after the other."""
+    M0, C0, K0 = disk.constant_matrices(speed)
+    size = len(M0)
+    n = np.repeat(disk.waves, disk.M + 1)
+    instants = np.unique([0.0, 1.0, *(instant for pinion in pinions for instant in pinion.instants)])
+    # Rounding puts the same instant down twice.
+    instants = np.concatenate([[0.0], instants[1:][np.diff(instants) > 1e-10]])
+    instants[-1] = 1.0
+    X = np.eye(2 * size, dtype=complex)
+    frequency = np.sqrt(np.abs(K0).max())
+    scale = np.concatenate([np.full(size, frequency), np.ones(size)])
+    for start, end in pairwise(instants):
+        tables = [_radial_tables(disk, pinion, start, end) for pinion in pinions]
+
+        def rates(t: float, flat: np.ndarray, tables=tables) -> np.ndarray:
+            M, C, K = M0.copy(), C0.copy(), K0.copy()
+            for radial, angle in tables:
+                R, theta = radial(t / period), float(angle(t / period))
+                # H_nq e^{i(-n+q)θc}/(2πρh), (4-8) and (4-11)
+                wave = np.exp(1j * theta * (-n[:, None] + n[None, :]))
+                H = wave * np.outer(R, R) / (2 * np.pi * disk.rho * disk.h)
+                M += H * m_p
+                C += H * c_b
+                K += H * k_b
+            Y = flat.reshape(2 * size, 2 * size) / scale[:, None]
+            acceleration = -np.linalg.solve(M, K @ Y[:size] + C @ Y[size:])
+            return (np.concatenate([Y[size:], acceleration]) * scale[:, None]).ravel()
+
+        solution = solve_ivp(
+            rates,
+            (start * period, end * period),
+            (X * scale[:, None]).ravel(),
+            method="DOP853",
+            rtol=tolerance,
+            atol=tolerance * frequency,
+        )
+        assert solution.success, solution.message
+        X = solution.y[:, -1].reshape(2 * size, 2 * size) / scale[:, None]
+    return np.linalg.eigvals(X * scale[:, None] / scale[None, :])
+
+
+def _radial_tables(
+    disk: ComplexDisk, pinion: Pinion, start: float, end: float
+) -> tuple[Callable[[float], np.ndarray], chebyshev.Chebyshev]:
+    """R_mn(r_c) in the order of the coordinates, and θ_c, as Chebyshev series in t/T0 on one smooth piece."""
+
+    def radial(x: np.ndarray) -> np.ndarray:
+        r, _ = pinion.position(x)
+        return np.array([disk.radial(m, n, r) for n in range(disk.N + 1) for m in range(disk.M + 1)]).T
+
+    degree, one = 80, disk.M + 1
+    points = chebyshev.chebpts1(degree + 1)
+    x = (start + end) / 2 + (end - start) / 2 * points
+    coefficients = np.linalg.solve(chebyshev.chebvander(points, degree), radial(x))
+    order = np.concatenate([np.arange(abs(n) * one, (abs(n) + 1) * one) for n in disk.waves])
+
+    def at(fraction: float) -> np.ndarray:
+        local = (2 * fraction - start - end) / (end - start)
+        return np.asarray(chebyshev.chebval(local, coefficients))[order]
+
+    angle = chebyshev.Chebyshev.interpolate(lambda y: pinion.position(y)[1], degree, [start, end])
+    check = start + (end - start) * np.array([0.111, 0.537, 0.923])
+    for fraction, exact in zip(check, radial(check), strict=True):
+        error = np.abs(at(fraction) - exact[order]).max() / np.abs(exact).max()
+        assert error < 1e-11, f"R(r_c) is not smooth between {start} and {end} of the period: {error:.1e}"
+    return at, angle
