@@ -13,13 +13,11 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import linalg, optimize, special
 
 from facegear.geometry import Drive
-from facegear.parameters import STEEL, Material, integer_at_least, within
-
-FloatArray = NDArray[np.float64]
+from facegear.parameters import STEEL, FloatArray, Material, integer_at_least, within
 
 BORE_RATIO_RANGE = (0.05, 0.9)
 MAX_NODAL_CIRCLES = 4

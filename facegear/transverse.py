@@ -2,24 +2,34 @@
 
 The disk is discretised by its own modes. With w = Σ R_mn(r) e^{inθ} η_mn (4-5) and η_-n the conjugate of η_n,
 each pair ±n becomes √2 R_mn (A_mn cos nθ + B_mn sin nθ): as many real coordinates as complex ones, the same
-motion, and nothing rescaled (:mod:`facegear.symbolic.galerkin` derives it). All coordinates carry √(2πρh),
-so that the mass matrix of the disk is the identity and the deflection under a pinion is φᵀq [m].
+motion, and nothing rescaled (:mod:`facegear.symbolic.galerkin` derives it). The deflection is w = φ(r, θ)ᵀq;
+the equations are divided by 2πρh, as in (4-8), so that the mass matrix of the disk is the identity.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.linalg import block_diag
 
-from facegear.parameters import FloatArray, MeshLoad, nonnegative, positive, rad_per_s, within
+from facegear.kinematics import ContactPath, mesh_period, phase_split
+from facegear.parameters import (
+    FloatArray,
+    MeshLoad,
+    finite_array,
+    positive,
+    rad_per_s,
+    within,
+)
 from facegear.periodic import ContactLoad, PeriodicSystem, Rate
 from facegear.piecewise import PiecewiseChebyshev
-from facegear.plate import Body, centrifugal_stiffness
+from facegear.plate import Body, RadialModes, centrifugal_stiffness
 
 REFERENCE_SPEED = float(rad_per_s(1000.0))
 """End of the speed range over which the reference stiffness is averaged [rad/s of the face gear]."""
@@ -69,59 +79,60 @@ def shape_vector(body: Body, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray, shape (..., n)
-        R_m0, √2 R_mn cos nθ, √2 R_mn sin nθ, over √(2πρh) [1/√kg].
+        R_m0, √2 R_mn cos nθ and √2 R_mn sin nθ [1/m].
 
     Raises
     ------
     ValueError
         If a radius lies off the disk.
     """
-    radius, angle = np.broadcast_arrays(np.asarray(radius, dtype=float), np.asarray(angle, dtype=float))
-    parts = []
-    for n, modes in enumerate(body.modes):
-        radial = modes(radius / body.outer_radius) / body.outer_radius
-        if n == 0:
-            parts.append(radial)
-        else:
-            parts += [math.sqrt(2) * radial * np.cos(n * angle), math.sqrt(2) * radial * np.sin(n * angle)]
-    scale = math.sqrt(2 * math.pi * body.material.density * body.thickness)
-    return np.moveaxis(np.concatenate(parts), 0, -1) / scale
+    return _shape(body.modes, np.divide(radius, body.outer_radius), angle) / body.outer_radius
 
 
-def disk_matrices(body: Body, speed: float) -> tuple[FloatArray, FloatArray]:
+def _shape(modes: tuple[RadialModes, ...], x: ArrayLike, angle: ArrayLike) -> FloatArray:
+    """Shape vector on unit outer radius, shape (..., n)."""
+    x, angle = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(angle, dtype=float))
+    parts = [modes[0](x)]
+    for n, radial in enumerate(modes[1:], start=1):
+        value = math.sqrt(2) * radial(x)
+        parts += [value * np.cos(n * angle), value * np.sin(n * angle)]
+    return np.moveaxis(np.concatenate(parts), 0, -1)
+
+
+def disk_matrices(body: Body, speed: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Damping and stiffness of the spinning disk in the space-fixed frame (4-9, 4-11), real basis.
 
     Parameters
     ----------
     body : Body
-    speed : float
+    speed : array_like
         Ω2 [rad/s], 0 or greater.
 
     Returns
     -------
-    damping, stiffness : ndarray, shape (n, n)
-        C0 [1/s] and K0 [1/s²]; the mass matrix is the identity.
+    damping, stiffness : ndarray, shape (..., n, n)
+        C0 [1/s] and K0 [1/s²] for each speed; the mass matrix is the identity.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a speed is not a finite number of 0 or greater.
     """
-    speed = nonnegative("speed", speed, "rad/s")
+    omega = finite_array("speed", speed, "rad/s")[..., np.newaxis, np.newaxis]
+    if np.any(omega < 0):
+        raise ValueError(f"speed must be 0 or greater in rad/s, got {speed!r}")
     xi = body.material.viscous_loss_factor
-    per_circle = body.nodal_circles + 1
-    size = per_circle * (2 * body.nodal_diameters + 1)
-    damping, stiffness = np.zeros((size, size)), np.zeros((size, size))
+    circles = np.eye(body.nodal_circles + 1)
+    # ∂/∂θ takes the pair (A, B) of A cos nθ + B sin nθ to n (B, -A).
     turning = np.array([[0.0, 1.0], [-1.0, 0.0]])
-    start = 0
+    elastic, centrifugal, derivative = [], [], []
     for n, modes in enumerate(body.modes):
         waves = 2 if n else 1
-        block = slice(start, start + waves * per_circle)
-        start = block.stop
-        # ∂/∂θ takes (A, B) of A cos nθ + B sin nθ to n (B, -A).
-        derivative = np.kron(n * turning[:waves, :waves], np.eye(per_circle))
-        elastic = np.diag(np.tile(body.eigenvalues[:, n], waves))
-        centrifugal = np.kron(np.eye(waves), speed**2 * centrifugal_stiffness(modes))
-        damping[block, block] = xi * elastic + 2 * speed * derivative
-        stiffness[block, block] = (
-            elastic + centrifugal + xi * speed * elastic @ derivative + speed**2 * derivative @ derivative
-        )
-    return damping, stiffness
+        elastic.append(np.tile(body.eigenvalues[:, n], waves))
+        centrifugal.append(np.kron(np.eye(waves), centrifugal_stiffness(modes)))
+        derivative.append(np.kron(n * turning[:waves, :waves], circles))
+    E, L, T = np.diag(np.concatenate(elastic)), block_diag(*centrifugal), block_diag(*derivative)
+    return xi * E + 2 * omega * T, E + omega**2 * (L + T @ T) + xi * omega * E @ T
 
 
 def disk_stiffness(body: Body, speed: ArrayLike, radius: float) -> FloatArray:
@@ -140,11 +151,15 @@ def disk_stiffness(body: Body, speed: ArrayLike, radius: float) -> FloatArray:
     ndarray
         k_d, force over steady deflection under it [N/m], of the shape of `speed`.
     """
-    speeds = np.asarray(speed, dtype=float)
-    stiffness = np.stack([disk_matrices(body, float(value))[1] for value in speeds.ravel()])
+    _, stiffness = disk_matrices(body, speed)
     shape = shape_vector(body, radius, 0.0)
-    compliance = np.linalg.solve(stiffness, shape[:, np.newaxis])[..., 0] @ shape
-    return np.reshape(1.0 / compliance, speeds.shape)
+    compliance: FloatArray = np.linalg.solve(stiffness, shape[:, np.newaxis])[..., 0] @ shape
+    return _modal_mass(body) / compliance
+
+
+def _modal_mass(body: Body) -> float:
+    """2πρh, by which (4-8) divides every load [kg/m²]."""
+    return 2 * math.pi * body.material.density * body.thickness
 
 
 @lru_cache(maxsize=256)
@@ -177,3 +192,202 @@ def nominal_pinion_mass(body: Body) -> float:
     """Mass of the pinion as a solid cylinder, ρπr_p²(L2 - L1), the denominator of (4-19) [kg]."""
     drive = body.drive
     return body.material.density * math.pi * drive.pitch_radius**2 * drive.face_width
+
+
+def _path(body: Body, contact_ratio: float | None) -> ContactPath:
+    if contact_ratio is None:
+        return ContactPath(body.drive)
+    return ContactPath(body.drive, contact_ratio)
+
+
+@lru_cache(maxsize=256)
+def contact_centroid(path: ContactPath) -> PiecewiseChebyshev:
+    """Contact centroid (3-21) of a pinion at angle 0 against t/T0, fitted once for each path.
+
+    Parameters
+    ----------
+    path : ContactPath
+        Path of the contact points and its clock.
+
+    Returns
+    -------
+    PiecewiseChebyshev
+        r_c over the outer radius [-] and θ_c [rad].
+    """
+    edges = np.append(path.breakpoints, 1.0)
+
+    def position(fraction: FloatArray, piece: int) -> FloatArray:
+        start, end = edges[piece], edges[piece + 1]
+        centroid = path.centroid_on_piece(piece, (2 * fraction - start - end) / (end - start))
+        return np.stack([centroid.radius / path.drive.outer_radius, centroid.angle], axis=-1)
+
+    return PiecewiseChebyshev.fit(position, path.breakpoints)
+
+
+@lru_cache(maxsize=256)
+def contact_shape(modes: tuple[RadialModes, ...], path: ContactPath) -> PiecewiseChebyshev:
+    """Shape vector at the contact centroid of a pinion at angle 0 against t/T0.
+
+    It does not depend on the thickness of the body.
+
+    Parameters
+    ----------
+    modes : tuple of RadialModes
+        `modes` of the body.
+    path : ContactPath
+        Path of the contact points and its clock.
+
+    Returns
+    -------
+    PiecewiseChebyshev
+        φ [1/m], one series for each smooth piece of the period.
+    """
+    centroid = contact_centroid(path)
+
+    def shape(fraction: FloatArray, piece: int) -> FloatArray:
+        x, angle = np.moveaxis(centroid(fraction), -1, 0)
+        return _shape(modes, x, angle) / path.drive.outer_radius
+
+    return PiecewiseChebyshev.fit(shape, centroid.breakpoints)
+
+
+def rotated(body: Body, shape: PiecewiseChebyshev, angle: float) -> PiecewiseChebyshev:
+    """Shape vector of a point ahead of another by a constant angle: cosine and sine parts turn by n times it.
+
+    Parameters
+    ----------
+    body : Body
+    shape : PiecewiseChebyshev
+        φ(r_c, θ_c).
+    angle : float
+        α [rad].
+
+    Returns
+    -------
+    PiecewiseChebyshev
+        φ(r_c, θ_c + α).
+    """
+    blocks = [np.eye(1)]
+    for n in range(1, body.nodal_diameters + 1):
+        cosine, sine = math.cos(n * angle), math.sin(n * angle)
+        blocks.append(np.array([[cosine, -sine], [sine, cosine]]))
+    rotation = block_diag(*(np.kron(block, np.eye(body.nodal_circles + 1)) for block in blocks))
+    return PiecewiseChebyshev(shape.breakpoints, shape.coefficients @ rotation.T)
+
+
+@dataclass(frozen=True)
+class Transverse:
+    """Transverse vibration of a face gear under one or more equal pinions (4-8, 5-6).
+
+    Parameters
+    ----------
+    body : Body
+        Disk and modes.
+    load : MeshLoad
+        μ, ζ, τ of every pinion (4-17 to 4-19).
+    pinion_angles : sequence of float
+        θ_c of each pinion [rad], between -2π and 2π and all different. What is left of an angle after whole
+        teeth sets the phase of the pinion's mesh (5-1 to 5-4).
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh. Default: Tregold's `drive.contact_ratio`, as printed;
+        `drive.geometric_contact_ratio` is that of the true sweep.
+    rate : {"frozen", "total"}
+        Whether the pinion follows ∂w/∂t at the contact centroid ("frozen", as printed in 4-1) or the deflection
+        under the moving centroid ("total").
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range.
+
+    Examples
+    --------
+    >>> from facegear.geometry import Drive
+    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = Transverse(body, MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> model.system(speed=50.0).size
+    14
+    """
+
+    body: Body
+    load: MeshLoad
+    pinion_angles: Sequence[float] = (0.0,)
+    contact_ratio: float | None = None
+    rate: Rate = "frozen"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.body, Body):
+            raise TypeError(f"body must be a Body, got {self.body!r}")
+        if not isinstance(self.load, MeshLoad):
+            raise TypeError(f"load must be a MeshLoad, got {self.load!r}")
+        if self.rate not in ("frozen", "total"):
+            raise ValueError(f"rate must be 'frozen' or 'total', got {self.rate!r}")
+        # Fails here rather than at the first use if the contact ratio is not valid.
+        object.__setattr__(self, "contact_ratio", _path(self.body, self.contact_ratio).contact_ratio)
+        angles = finite_array("pinion_angles", self.pinion_angles, "rad")
+        if angles.ndim != 1 or angles.size == 0:
+            raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
+        for angle in angles.tolist():
+            within("pinion_angles", angle, -2 * math.pi, 2 * math.pi, "rad", hint="degrees?")
+        gaps = np.diff(np.sort(np.mod(angles, 2 * math.pi)), append=0.0)
+        gaps[-1] = 2 * math.pi - np.ptp(np.mod(angles, 2 * math.pi))
+        if gaps.min() < 1e-6:
+            raise ValueError(f"pinion_angles must differ from one another, got {self.pinion_angles!r}")
+        object.__setattr__(self, "pinion_angles", tuple(angles.tolist()))
+
+    @property
+    def bearing_stiffness(self) -> float:
+        """k_b = μ times the reference stiffness of the disk [N/m] (4-17)."""
+        return self.load.stiffness * reference_stiffness(self.body)
+
+    @property
+    def bearing_damping(self) -> float:
+        """c_b = ζ k_b [N s/m] (4-18)."""
+        return self.load.damping * self.bearing_stiffness
+
+    @property
+    def pinion_mass(self) -> float:
+        """m_p = τ times the nominal pinion mass [kg] (4-19)."""
+        return self.load.mass * nominal_pinion_mass(self.body)
+
+    @cached_property
+    def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
+        """Shape vector at each pinion's contact centroid against t/T0 (5-4)."""
+        drive = self.body.drive
+        first = contact_shape(self.body.modes, _path(self.body, self.contact_ratio))
+        phases = phase_split(drive, self.pinion_angles).phase
+        return tuple(
+            rotated(self.body, first, angle).shift(phase)
+            for angle, phase in zip(self.pinion_angles, phases, strict=True)
+        )
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed (4-10, 5-6).
+
+        Parameters
+        ----------
+        speed : float
+            Ω2 of the face gear [rad/s], greater than 0.
+
+        Returns
+        -------
+        PeriodicSystem
+            (M + 1)(2N + 1) coordinates, one load for each pinion, period T0 (3-20).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `speed` is not a finite number greater than 0.
+        """
+        speed = positive("speed", speed, "rad/s")
+        damping, stiffness = disk_matrices(self.body, speed)
+        scale = _modal_mass(self.body)
+        stiffness_b, damping_b, mass_p = (
+            value / scale for value in (self.bearing_stiffness, self.bearing_damping, self.pinion_mass)
+        )
+        loads = tuple(
+            ContactLoad(shape, stiffness=stiffness_b, damping=damping_b, mass=mass_p, rate=self.rate)
+            for shape in self.shapes
+        )
+        period = mesh_period(self.body.drive, speed)
+        return PeriodicSystem(np.eye(len(stiffness)), damping, stiffness, loads, period)
