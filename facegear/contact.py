@@ -154,20 +154,42 @@ class ContactRegion:
         return root(slope, 0.0, _STEEPEST) if slope(0.0) < 0.0 else 0.0
 
     def top_roll(self, radius: float) -> float:
-        """Roll angle of the tooth top at −y_p = `radius` [rad]; 0 where the base circle comes first."""
+        """Roll angle of the tooth top at −y_p = `radius` [rad]; 0 where the base circle comes first.
+
+        Raises
+        ------
+        ValueError
+            The shaper's tip does not reach below the tooth top at `radius`: there is no flank, only fillet.
+        """
 
         def excess(roll: float) -> float:
             return float(self.depth(self.edge_angle(radius, roll), roll)) - self.tooth_top_distance
 
-        return root(excess, 0.0, 2.0) if excess(0.0) < 0.0 else 0.0
+        if radius < self.flank_start * (1.0 - 1e-12):
+            raise ValueError(
+                f"radius must be at least {self.flank_start:.6g} m, where the flank starts, got {radius:.6g} m"
+            )
+        if excess(0.0) >= 0.0:
+            return 0.0
+        # At the start of the flank the tooth top is at the shaper's tip but for rounding.
+        return root(excess, 0.0, self.shaper_tip_roll) if excess(self.shaper_tip_roll) > 0.0 else self.shaper_tip_roll
 
     def _top_angle(self, roll: float) -> float:
-        """Local pressure angle of the tooth top on the profile point `roll` > 0, rising branch [rad]."""
+        """Local pressure angle of the tooth top on the profile point `roll` > 0 [rad]; not below 0."""
 
         def excess(alpha: float) -> float:
             return float(self.depth(alpha, roll)) - self.tooth_top_distance
 
-        return root(excess, 0.0, math.atan(roll))
+        return root(excess, 0.0, math.atan(roll)) if excess(0.0) < 0.0 else 0.0
+
+    @cached_property
+    def flank_start(self) -> float:
+        """Least −y_p with a flank [m]: R1, or, with many teeth, where the shaper's tip meets the tooth top.
+
+        Inside it the tip's undercut lies above the tooth top, and the tooth there is all fillet.
+        """
+        alpha = self._top_angle(self.shaper_tip_roll)
+        return max(self.inner_radius, float(self.radial_position(alpha, self.shaper_tip_roll)))
 
     @cached_property
     def entry(self) -> float:
@@ -181,9 +203,14 @@ class ContactRegion:
         return self.edge_angle(self.outer_radius, roll) - roll
 
     @cached_property
-    def _exit_at_inner_edge(self) -> bool:
-        """Whether the pinion's tip reaches the inner edge below the tooth top."""
-        return self.top_roll(self.inner_radius) < self.tip_roll
+    def _tip_leaves_top(self) -> float:
+        """Local pressure angle where the pinion's tip circle leaves the tooth top [rad]."""
+        return self._top_angle(self.tip_roll)
+
+    @cached_property
+    def _inner_edge_in_reach(self) -> bool:
+        """Whether the pinion's tip still lies below the tooth top when it comes to the inner edge."""
+        return float(self.radial_position(self._tip_leaves_top, self.tip_roll)) < self.inner_radius
 
     @cached_property
     def exit(self) -> float:
@@ -191,15 +218,15 @@ class ContactRegion:
 
         The pinion's tip leaves at the inner edge, or, with many teeth, where it leaves the tooth top before.
         """
-        if self._exit_at_inner_edge:
+        if self._inner_edge_in_reach:
             return self.edge_angle(self.inner_radius, self.tip_roll) - self.tip_roll
-        return self._top_angle(self.tip_roll) - self.tip_roll
+        return self._tip_leaves_top - self.tip_roll
 
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """C between entry and exit where an end of the contact line changes edge, descending [rad]."""
         changes = [self.edge_angle(self.outer_radius, self.tip_roll) - self.tip_roll]
-        if self._exit_at_inner_edge:
+        if self._inner_edge_in_reach:
             roll = self.top_roll(self.inner_radius)
             changes.append(self.edge_angle(self.inner_radius, roll) - roll)
             if roll == 0.0:

@@ -72,7 +72,7 @@ class ToothFlank:
     ----------
     region : ContactRegion
     points : ndarray, shape (along, across, 3)
-        Coordinates in the face gear's frame Γ2 [m]; the first index runs from R1 to R2, the second from tooth
+        Coordinates in the face gear's frame Γ2 [m]; the first index runs outwards to R2, the second from tooth
         top to root.
     position : ndarray, shape (along, across)
         u_s where each point is generated [m].
@@ -124,7 +124,7 @@ def tooth_flank(region: ContactRegion, along: int, across: int, flank: int) -> T
     n = parameters.integer_at_least("along", along, 2)
     k = parameters.integer_at_least("across", across, 2)
     sign = _mirror(flank)
-    radii = np.linspace(region.inner_radius, region.outer_radius, n)
+    radii = np.linspace(region.flank_start, region.outer_radius, n)
     top = np.array([region.top_roll(radius) for radius in radii])[:, None]
     roll = top + (region.shaper_tip_roll - top) * np.linspace(0.0, 1.0, k)
     alpha = np.array(

@@ -221,6 +221,15 @@ class Drive:
         return self.outer_limit * math.sin(self.shaft_angle)
 
     @property
+    def flank_start(self) -> float:
+        """Least radius on the gear plane with a flank above the fillet [m]: R1, unless the teeth are many.
+
+        From some 45 pinion teeth on (at 5:1 and 25°) the critical point of undercutting lies above the tooth
+        top; the tooth is then all fillet from R1 to here.
+        """
+        return self.contact_region.flank_start
+
+    @property
     def face_width(self) -> float:
         """L = L2 − L1 [m] (4-21)."""
         return self.outer_limit - self.inner_limit
@@ -321,7 +330,8 @@ class Drive:
         Parameters
         ----------
         along : int
-            Points along the face width, equally spaced in −y_p from R1 to R2 of the generating position.
+            Points along the face width, equally spaced in −y_p from `flank_start` to R2 of the generating
+            position.
         across : int
             Points across the profile, equally spaced in roll angle from the tooth top (or the base circle) to
             the shaper's addendum circle.
@@ -373,11 +383,7 @@ class Drive:
         Raises
         ------
         TypeError, ValueError
-            Not numeric, not finite, or inside R1.
+            Not numeric, not finite, or inside `flank_start`.
         """
         radii = parameters.finite_array("radius", radius, "m")
-        if np.any(radii < self.inner_radius * (1.0 - 1e-12)):
-            raise ValueError(
-                f"radius must be at least inner_radius={self.inner_radius:.6g} m, got {radii.min():.6g} m"
-            )
         return np.array([top_thickness(self.contact_region, r) for r in radii.flat]).reshape(radii.shape)
