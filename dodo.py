@@ -21,6 +21,7 @@ from tools.run_notebook import code_cells
 
 ROOT = Path(__file__).resolve().parent
 BUILD = ROOT / "build"
+BUILD.mkdir(exist_ok=True)  # doit opens its record there before any step runs
 EXECUTED = BUILD / "executed"
 SOURCE = BUILD / "book-src"
 PAGES = BUILD / "_build"

@@ -81,6 +81,8 @@ def execute(
     failed.mkdir(parents=True, exist_ok=True)
     kept = failed / notebook.name
     kept.unlink(missing_ok=True)
+    for left in output.parent.glob(f".{output.stem}.*.ipynb"):  # by a run that was killed
+        left.unlink()
     unfinished = output.with_name(f".{output.stem}.{os.getpid()}.ipynb")
     done = 0
 

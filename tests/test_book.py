@@ -1,0 +1,307 @@
+"""The built book, looked at in Chromium: `make book`, then `make test-book`."""
+
+import functools
+import re
+import shutil
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from html.parser import HTMLParser
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from urllib.parse import parse_qs, unquote, urlsplit
+
+import pytest
+import yaml
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, Route, sync_playwright
+
+pytestmark = pytest.mark.book
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = ROOT / "build" / "_build" / "html"
+# What Jupyter Book 1 itself says on every page; see sphinx-thebe and pydata-sphinx-theme.
+KNOWN_MESSAGES = re.compile(r"'THEBE_JS_URL' has already been declared|Got invalid theme mode")
+FLAGS = ["--headless=new", "--no-sandbox", "--disable-background-networking", "--enable-unsafe-swiftshader"]
+LOWEST_CONTRAST = 4.5  # WCAG 2.2, level AA, for text of ordinary size
+
+
+def pages_of_the_book() -> list[str]:
+    """Return the addresses that the table of contents names, and those Sphinx adds."""
+    contents = yaml.safe_load((ROOT / "book" / "_toc.yml").read_text(encoding="utf-8"))
+    chapters = [chapter["file"] for part in contents["parts"] for chapter in part["chapters"]]
+    return [f"{name}.html" for name in [contents["root"], *chapters]]
+
+
+every_page = pytest.mark.parametrize("address", pages_of_the_book())
+
+
+@dataclass
+class Visit:
+    """A page that has been opened, and what it did meanwhile."""
+
+    page: Page
+    complaints: list[str] = field(default_factory=list)
+    strangers: list[str] = field(default_factory=list)
+
+
+class QuietHandler(SimpleHTTPRequestHandler):
+    def log_message(self, *_: object) -> None:
+        pass
+
+
+@pytest.fixture(scope="session")
+def server() -> Iterator[str]:
+    assert (PAGES / "index.html").is_file(), "there is no book to look at: run `make book` first"
+    handler = functools.partial(QuietHandler, directory=str(PAGES))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as running:
+        thread = threading.Thread(target=running.serve_forever)
+        thread.start()
+        yield f"http://127.0.0.1:{running.server_port}/"
+        running.shutdown()
+        thread.join()
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    assert found, "Chromium is missing: apt-get install chromium"
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=found, args=FLAGS)
+        yield running
+        running.close()
+
+
+@pytest.fixture
+def visit(server: str, browser: Browser) -> Iterator[Callable[..., Visit]]:
+    """Open a page of the book, the network beyond this machine cut off."""
+    contexts = []
+
+    def open_page(address: str, width: int = 1440, scheme: str = "light") -> Visit:
+        context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
+        contexts.append(context)
+        opened = Visit(context.new_page())
+
+        def guard(route: Route) -> None:
+            if route.request.url.startswith(server):
+                route.continue_()
+            else:
+                opened.strangers.append(route.request.url)
+                route.abort()
+
+        def complain(text: str) -> None:
+            if not KNOWN_MESSAGES.search(text):
+                opened.complaints.append(text)
+
+        def listen(message: ConsoleMessage) -> None:
+            if message.type == "error":
+                complain(f"{message.text} ({message.location.get('url', '')})")
+
+        context.route("**/*", guard)
+        opened.page.on("console", listen)
+        opened.page.on("pageerror", lambda error: complain(str(error)))
+        opened.page.goto(server + address, wait_until="load")
+        opened.page.evaluate("async () => { if (window.MathJax) await MathJax.startup.promise; }")
+        if opened.page.locator("script[type='application/vnd.jupyter.widget-view+json']").count():
+            opened.page.wait_for_selector(".jupyter-widgets")
+        for view in opened.page.locator(".turning-view").all():
+            view.locator("canvas").first.wait_for()
+        return opened
+
+    yield open_page
+    for context in contexts:
+        context.close()
+
+
+@every_page
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [375, 1440])
+def test_page_is_whole_and_readable(
+    visit: Callable[..., Visit], address: str, width: int, scheme: str
+) -> None:
+    opened = visit(address, width, scheme)
+    page = opened.page
+    assert page.evaluate("document.documentElement.dataset.theme") == scheme
+
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate("document.body.scrollWidth") <= width
+
+    assert (
+        page.locator(".bd-article .math").count()
+        == page.locator(".bd-article .math:has(mjx-container)").count()
+    )
+    assert page.locator("mjx-merror").count() == 0
+    assert not re.search(r"\$\$|\\\(|\\\[|\\begin\{", page.locator(".bd-article").evaluate(TEXT_OUTSIDE_CODE))
+
+    for picture in page.locator("img").evaluate_all(PICTURES):
+        assert picture["alt"].strip(), picture
+        assert picture["natural"] > 0, picture
+        assert not picture["shown"] or picture["background"] >= 0.8 or not picture["figure"], picture
+
+    faint = page.evaluate(FAINT_TEXT, LOWEST_CONTRAST)
+    assert not faint
+
+    assert not opened.strangers
+    assert not opened.complaints
+
+
+TEXT_OUTSIDE_CODE = """article => {
+  const copy = article.cloneNode(true);
+  copy.querySelectorAll("pre, code, script, mjx-container").forEach(element => element.remove());
+  return copy.textContent;
+}"""
+
+# Relative luminance after WCAG 2.2; a colour is what `getComputedStyle` returns.
+LUMINANCE = """
+  const channels = colour => (colour.match(/[\\d.]+/g) || []).map(Number);
+  const linear = c => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+  const luminance = ([r, g, b]) => 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+  const background = element => {
+    for (let e = element; e; e = e.parentElement) {
+      const c = channels(getComputedStyle(e).backgroundColor);
+      if (c.length === 3 || c[3] > 0.5) return c;
+    }
+    return [255, 255, 255];
+  };
+"""
+
+PICTURES = (
+    "images => {"
+    + LUMINANCE
+    + """
+  return images.map(image => ({
+    source: image.src.slice(0, 80), alt: image.alt, natural: image.naturalWidth,
+    shown: image.getBoundingClientRect().width > 0,
+    figure: image.closest(".cell_output") !== null,
+    background: luminance(background(image)),
+  }));
+}"""
+)
+
+FAINT_TEXT = (
+    "lowest => {"
+    + LUMINANCE
+    + """
+  const faint = [];
+  const walker = document.createTreeWalker(document.querySelector(".bd-article"), NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const element = walker.currentNode.parentElement;
+    if (!walker.currentNode.data.trim() || !element.checkVisibility({ opacityProperty: true })) continue;
+    if (element.closest("script, style, mjx-container, svg, .turning-view, .headerlink")) continue;
+    const ink = channels(getComputedStyle(element).color);
+    let opacity = ink.length > 3 ? ink[3] : 1;
+    for (let e = element; e; e = e.parentElement) opacity *= Number(getComputedStyle(e).opacity);
+    const paper = background(element);
+    const seen = [0, 1, 2].map(i => opacity * ink[i] + (1 - opacity) * paper[i]);
+    const [low, high] = [luminance(seen), luminance(paper)].sort((a, b) => a - b);
+    const contrast = (high + 0.05) / (low + 0.05);
+    if (contrast < lowest) faint.push([walker.currentNode.data.trim().slice(0, 60), contrast.toFixed(2)]);
+  }
+  return faint;
+}"""
+)
+
+
+class Anchors(HTMLParser):
+    """Collects what a page defines (ids) and what it points to."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.defined: set[str] = set()
+        self.targets: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        for name, value in attrs:
+            if name == "id" and value:
+                self.defined.add(value)
+            if name in ("href", "src") and value:
+                self.targets.append(value)
+
+
+@functools.cache
+def parsed(path: Path) -> Anchors:
+    anchors = Anchors()
+    anchors.feed(path.read_text(encoding="utf-8"))
+    return anchors
+
+
+@every_page
+def test_links_inside_the_book_lead_somewhere(address: str) -> None:
+    source = PAGES / address
+    broken = []
+    for link in parsed(source).targets:
+        parts = urlsplit(link)
+        if parts.scheme or parts.netloc:
+            continue
+        target = (source.parent / unquote(parts.path)).resolve() if parts.path else source
+        if not target.is_file() or (
+            parts.fragment
+            and target.suffix == ".html"
+            and unquote(parts.fragment) not in parsed(target).defined
+        ):
+            broken.append(link)
+    assert not broken
+
+
+@every_page
+def test_buttons_open_files_of_the_repository(address: str) -> None:
+    """Launch and source buttons name files by their path in the repository."""
+    for link in parsed(PAGES / address).targets:
+        parts = urlsplit(link)
+        if parts.netloc == "mybinder.org":
+            (inside,) = parse_qs(parts.query)["urlpath"]
+            assert (ROOT / inside.removeprefix("lab/tree/")).is_file(), link
+        if parts.netloc == "github.com" and "/blob/" in parts.path:
+            assert (ROOT / parts.path.split("/blob/main/")[1]).is_file(), link
+
+
+def test_there_is_a_slider_and_a_view_that_turns() -> None:
+    texts = [(PAGES / address).read_text(encoding="utf-8") for address in pages_of_the_book()]
+    assert any("SelectionSliderModel" in text or "IntSliderModel" in text for text in texts)
+    assert any('class="turning-view"' in text for text in texts)
+
+
+@every_page
+def test_sliders_change_the_picture(visit: Callable[..., Visit], address: str) -> None:
+    opened = visit(address)
+    for slider in opened.page.locator(".jupyter-widgets.widget-vbox:has(.widget-slider)").all():
+
+        def shown(widget: Locator = slider) -> list[str]:
+            return [image.get_attribute("src") for image in widget.locator("img").all() if image.is_visible()]
+
+        handle = slider.locator(".noUi-handle")
+        before = shown()
+        assert len(before) == 1
+        handle.press("ArrowRight")
+        assert len(shown()) == 1
+        assert shown() != before
+        handle.press("ArrowLeft")
+        assert shown() == before
+    assert not opened.complaints
+
+
+@every_page
+def test_views_turn(visit: Callable[..., Visit], address: str) -> None:
+    opened = visit(address)
+    for view in opened.page.locator(".turning-view").all():
+        view.scroll_into_view_if_needed()
+        camera = "view => JSON.stringify(view.querySelector('.js-plotly-plot')._fullLayout.scene._scene.getCamera())"
+        before = view.evaluate(camera)
+        box = view.bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        opened.page.mouse.move(x, y)
+        opened.page.mouse.down()
+        opened.page.mouse.move(x + 120, y + 40, steps=8)
+        opened.page.mouse.up()
+        assert view.evaluate(camera) != before
+    assert not opened.complaints
+
+
+def test_search_finds_pages_without_a_network(visit: Callable[..., Visit]) -> None:
+    opened = visit("search.html?q=face")
+    opened.page.wait_for_selector("#search-results li a")
+    assert not opened.strangers
+    assert not opened.complaints
+
+
+def test_front_door_leads_to_the_introduction() -> None:
+    assert 'url=intro.html"' in (PAGES / "index.html").read_text(encoding="utf-8")

@@ -1,0 +1,362 @@
+"""What stops a build, and what it then says; what is done again, and what is not."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import nbformat
+import psutil
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+RUN = [sys.executable, str(ROOT / "tools" / "run_notebook.py")]
+
+FIGURE = """
+import xarray as xr
+from facegear.reference import check_figures, variable
+arrays = xr.Dataset({{"y": variable("x", [1.0, {value}], "height", "m", atol=1e-9)}}, {{"x": [0.0, 1.0]}})
+check_figures({{"figure_tiny": arrays}}, "{data}", "{build}")
+"""
+ANCHOR = "route: by hand\nanchors:\n- {variable: y, at: {x: 1.0}, value: 2.0, atol: 1.0e-6}\n"
+
+
+def write_notebook(path: Path, *cells: str) -> Path:
+    notebook = nbformat.v4.new_notebook()
+    notebook.metadata.kernelspec = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    notebook.cells = [nbformat.v4.new_markdown_cell(f"# {path.stem}")]
+    notebook.cells += [nbformat.v4.new_code_cell(source) for source in cells]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    nbformat.write(notebook, path)
+    return path
+
+
+def run(notebook: Path) -> subprocess.CompletedProcess[str]:
+    folder = notebook.parent
+    command = [
+        *RUN,
+        str(notebook),
+        str(folder / "executed" / notebook.name),
+        "--failed",
+        str(folder / "failed"),
+    ]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_notebook_that_runs_appears_whole(tmp_path: Path) -> None:
+    done = run(write_notebook(tmp_path / "tiny.ipynb", "a = 2", "print(a + 2)"))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["cell 1 of 2", "cell 2 of 2"]
+    assert [path.name for path in (tmp_path / "executed").iterdir()] == ["tiny.ipynb"]
+    executed = nbformat.read(tmp_path / "executed" / "tiny.ipynb", as_version=4)
+    assert executed.cells[2].outputs[0].text == "4\n"
+    assert str(tmp_path) not in str(executed)
+    assert not list((tmp_path / "failed").iterdir())
+
+
+def test_failing_cell_stops_with_one_line_and_leaves_the_notebook(tmp_path: Path) -> None:
+    done = run(write_notebook(tmp_path / "tiny.ipynb", "a = 2", "a / 0", "print('never')"))
+    kept = tmp_path / "failed" / "tiny.ipynb"
+    assert done.returncode == 1
+    line = done.stderr.strip().splitlines()[-1]
+    assert line == f"tiny.ipynb, cell [2]: ZeroDivisionError: division by zero (open {kept})"
+    assert not list((tmp_path / "executed").iterdir())
+    outputs = [
+        output for cell in nbformat.read(kept, as_version=4).cells for output in cell.get("outputs", [])
+    ]
+    assert [output.ename for output in outputs if output.output_type == "error"] == ["ZeroDivisionError"]
+
+
+def test_kernel_that_dies_stops_with_one_line(tmp_path: Path) -> None:
+    done = run(write_notebook(tmp_path / "tiny.ipynb", "a = 2", "import os, signal\nos.kill(os.getpid(), 9)"))
+    assert done.returncode == 1
+    line = done.stderr.strip().splitlines()[-1]
+    assert line == f"tiny.ipynb, code cell 2: the kernel died (open {tmp_path / 'failed' / 'tiny.ipynb'})"
+    assert not list((tmp_path / "executed").iterdir())
+
+
+@pytest.fixture
+def checked(tmp_path: Path) -> Callable[[float], subprocess.CompletedProcess[str]]:
+    """Run a notebook that computes `value` and checks it, against what `tmp_path/data` holds."""
+    (tmp_path / "data" / "anchors").mkdir(parents=True)
+    (tmp_path / "data" / "anchors" / "figure_tiny.yaml").write_text(ANCHOR, encoding="utf-8")
+
+    def compute(value: float) -> subprocess.CompletedProcess[str]:
+        source = FIGURE.format(value=value, data=tmp_path / "data", build=tmp_path / "build")
+        return run(write_notebook(tmp_path / "tiny.ipynb", source))
+
+    return compute
+
+
+@pytest.mark.slow
+def test_missing_reference_wrong_array_and_damaged_reference_stop(
+    tmp_path: Path, checked: Callable[[float], subprocess.CompletedProcess[str]]
+) -> None:
+    computed = tmp_path / "build" / "arrays" / "figure_tiny.nc"
+    stored = tmp_path / "data" / "reference" / "figure_tiny.nc"
+
+    done = checked(2.0)
+    line = done.stderr.strip().splitlines()[-1]
+    assert done.returncode == 1
+    assert line.startswith(
+        "tiny.ipynb, cell [1]: ReferenceCheckError: reference file figure_tiny.nc is missing"
+    )
+    assert computed.exists()
+
+    stored.parent.mkdir()
+    shutil.copyfile(computed, stored)
+    assert checked(2.0).returncode == 0
+
+    done = checked(2.0000001)
+    line = done.stderr.strip().splitlines()[-1]
+    assert done.returncode == 1
+    assert "ReferenceCheckError: figure_tiny: 1 of 2 arrays disagree" in line
+    assert line.endswith(f"(open {tmp_path / 'failed' / 'tiny.ipynb'})")
+
+    stored.write_bytes(stored.read_bytes()[:-9])
+    done = checked(2.0)
+    assert done.returncode == 1
+    assert "ReferenceCheckError: reference file figure_tiny.nc" in done.stderr.strip().splitlines()[-1]
+
+
+@pytest.mark.slow
+def test_notebook_ends_with_the_build_that_started_it(tmp_path: Path) -> None:
+    notebook = write_notebook(
+        tmp_path / "tiny.ipynb",
+        "from pathlib import Path\nPath('started').touch()",
+        "import time\ntime.sleep(120)",
+    )
+    command = [*RUN, str(notebook), str(tmp_path / "executed" / "tiny.ipynb")]
+    command += ["--failed", str(tmp_path / "failed"), "--end-with-parent"]
+    with (tmp_path / "log").open("w") as log:
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log)
+    while not (tmp_path / "started").exists():
+        assert process.poll() is None, (tmp_path / "log").read_text()
+        time.sleep(0.05)
+    kernels = psutil.Process(process.pid).children(recursive=True)
+    assert kernels
+    process.stdin.close()
+    assert process.wait(timeout=20) == 1
+    _gone, alive = psutil.wait_procs(kernels, timeout=20)
+    assert not alive
+    assert not (tmp_path / "executed" / "tiny.ipynb").exists()
+
+    write_notebook(notebook, "a = 1")
+    assert run(notebook).returncode == 0
+    assert [path.name for path in (tmp_path / "executed").iterdir()] == ["tiny.ipynb"]
+
+
+def test_second_build_waits_for_the_first(tmp_path: Path) -> None:
+    hold = (
+        "import sys; from pathlib import Path; from tools.lock import one_at_a_time\n"
+        f"with one_at_a_time(Path({str(tmp_path / '.lock')!r})):\n"
+        "    print('in', flush=True); sys.stdin.read()\n"
+    )
+
+    def start() -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [sys.executable, "-c", hold],
+            cwd=ROOT,
+            text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )
+
+    with start() as first:
+        assert first.stdout.readline() == "in\n"
+        with start() as second:
+            assert "waiting" in second.stderr.readline()
+            second.stdin.close()
+            first.send_signal(signal.SIGKILL)  # the lock is free however its holder ends
+            assert second.stdout.readline() == "in\n"
+            assert second.wait(timeout=20) == 0
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """Lay out a project with this one's tools and settings, two small notebooks and one page."""
+    for name in ("dodo.py", "_config.yml"):
+        shutil.copy(ROOT / name, tmp_path)
+    (tmp_path / "uv.lock").write_text("", encoding="utf-8")
+    shutil.copytree(ROOT / "tools", tmp_path / "tools")
+    (tmp_path / "facegear").mkdir()
+    (tmp_path / "facegear" / "module.py").write_text("a = 1\n", encoding="utf-8")
+    (tmp_path / "data").mkdir()
+    book = tmp_path / "book"
+    shutil.copytree(ROOT / "book" / "_assets", book / "_assets", ignore=shutil.ignore_patterns("vendor"))
+    (book / "references.bib").write_text("", encoding="utf-8")
+    (book / "intro.md").write_text("# Page\n", encoding="utf-8")
+    (book / "_toc.yml").write_text(
+        "format: jb-book\nroot: intro\nchapters:\n- file: notebooks/03_one\n- file: notebooks/04_two\n",
+        encoding="utf-8",
+    )
+    write_notebook(tmp_path / "notebooks" / "03_one.ipynb", "print(1)")
+    write_notebook(tmp_path / "notebooks" / "04_two.ipynb", "print(2)")
+    return tmp_path
+
+
+def build(project: Path, *tasks: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, str(project / "tools" / "build.py"), *tasks]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=project)
+
+
+def executed(project: Path) -> dict[str, float]:
+    return {path.stem: path.stat().st_mtime for path in (project / "build" / "executed").glob("*.ipynb")}
+
+
+@pytest.mark.slow
+def test_only_what_changed_is_done_again(project: Path) -> None:
+    page = project / "build" / "_build" / "html" / "notebooks" / "03_one.html"
+    first = build(project)
+    assert first.returncode == 0, first.stderr
+    assert page.as_uri().replace("notebooks/03_one", "index") in first.stdout
+    times, built = executed(project), page.stat().st_mtime
+
+    again = build(project)
+    assert again.returncode == 0
+    assert executed(project) == times
+    assert page.stat().st_mtime == built
+
+    write_notebook(project / "notebooks" / "03_one.ipynb", "print('other')")
+    assert build(project).returncode == 0
+    assert executed(project)["03_one"] > times["03_one"]
+    assert executed(project)["04_two"] == times["04_two"]
+    assert "other" in page.read_text(encoding="utf-8")
+
+    times = executed(project)
+    (project / "data" / "ch04.yaml").write_text("new: 1\n", encoding="utf-8")
+    assert build(project, "notebook").returncode == 0
+    assert executed(project)["03_one"] == times["03_one"]
+    assert executed(project)["04_two"] > times["04_two"]
+
+    times = executed(project)
+    (project / "facegear" / "module.py").write_text("a = 2\n", encoding="utf-8")
+    assert build(project, "notebook").returncode == 0
+    assert all(executed(project)[name] > times[name] for name in times)
+
+
+@pytest.mark.slow
+def test_warning_of_sphinx_stops_every_build_until_it_is_mended(project: Path) -> None:
+    page = project / "book" / "intro.md"
+    page.write_text("# Page\n\nSee {ref}`nothing-of-this-name`.\n", encoding="utf-8")
+    for _ in range(2):
+        done = build(project)
+        assert done.returncode != 0
+        (line,) = [line for line in done.stderr.splitlines() if line.startswith("FAILED")]
+        assert line.startswith("FAILED intro.md:3: WARNING: undefined label: 'nothing-of-this-name'")
+        assert str(project / "build" / "logs" / "sphinx.txt") in line
+    page.write_text("# Page\n", encoding="utf-8")
+    assert build(project).returncode == 0
+
+
+@pytest.mark.slow
+def test_warning_printed_by_a_notebook_stops_the_build(project: Path) -> None:
+    write_notebook(project / "notebooks" / "03_one.ipynb", "import warnings\nwarnings.warn('look')")
+    done = build(project)
+    assert done.returncode != 0
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("FAILED")]
+    assert "notebooks/03_one.ipynb" in line
+    assert "stderr" in line
+
+
+@pytest.mark.slow
+def test_failing_notebook_stops_the_book_and_keeps_the_others(project: Path) -> None:
+    write_notebook(project / "notebooks" / "03_one.ipynb", "raise RuntimeError('on purpose')")
+    done = build(project)
+    assert done.returncode != 0
+    (line,) = [line for line in done.stderr.splitlines() if line.startswith("FAILED")]
+    kept = project / "build" / "failed" / "03_one.ipynb"
+    assert line == f"FAILED 03_one.ipynb, cell [1]: RuntimeError: on purpose (open {kept})"
+    assert kept.exists()
+    assert set(executed(project)) == {"04_two"}
+    assert not (project / "build" / "_build").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT], ids=lambda how: how.name)
+def test_build_that_is_ended_goes_on_where_it_was(project: Path, how: signal.Signals) -> None:
+    started = project / "notebooks" / "started"
+    write_notebook(
+        project / "notebooks" / "04_two.ipynb",
+        "from pathlib import Path\nimport time\nif not Path('started').exists():\n"
+        "    Path('started').touch()\n    time.sleep(120)",
+    )
+    with (project / "log").open("w") as log:
+        process = subprocess.Popen(
+            [sys.executable, str(project / "tools" / "build.py")], cwd=project, stdout=log, stderr=log
+        )
+    while not (started.exists() and "03_one" in executed(project) and "03_one: done" in told(project)):
+        assert process.poll() is None, told(project)
+        time.sleep(0.05)
+    time.sleep(0.5)  # the record of the first notebook is written just after it is done
+    below = psutil.Process(process.pid).children(recursive=True)
+    os.kill(process.pid, how)
+    assert process.wait(timeout=30) != 0
+    _gone, alive = psutil.wait_procs(below, timeout=30)
+    assert not alive
+
+    times = executed(project)
+    assert set(times) == {"03_one"}
+    done = build(project)
+    assert done.returncode == 0, done.stderr
+    assert executed(project)["03_one"] == times["03_one"]
+    assert "04_two" in executed(project)
+
+
+def told(project: Path) -> str:
+    return (project / "log").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_references_are_made_anew_only_on_demand_and_say_what_moved(project: Path) -> None:
+    def compute(value: float) -> None:
+        source = 'data_directory = "../data"\nbuild_directory = "../build"'
+        check = FIGURE.format(value=value, data="{data_directory}", build="{build_directory}")
+        notebook = write_notebook(project / "notebooks" / "03_one.ipynb", source, check)
+        content = nbformat.read(notebook, as_version=4)
+        content.cells[1].metadata["tags"] = ["parameters"]
+        content.cells[2].source = check.replace('"{data_directory}"', "data_directory").replace(
+            '"{build_directory}"', "build_directory"
+        )
+        nbformat.write(content, notebook)
+
+    def update() -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, str(project / "tools" / "update_references.py")]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    stored = project / "data" / "reference" / "figure_tiny.nc"
+    anchors = project / "data" / "anchors" / "figure_tiny.yaml"
+    anchors.parent.mkdir()
+    anchors.write_text(ANCHOR, encoding="utf-8")
+    compute(2.0)
+    assert build(project, "notebook").returncode != 0
+    assert not stored.exists()
+
+    first = update()
+    assert first.returncode == 0, first.stdout + first.stderr
+    assert "figure_tiny.nc: new, 2 arrays" in first.stdout
+    assert build(project, "notebook").returncode == 0
+
+    compute(2.5)
+    assert build(project, "notebook").returncode != 0
+    moved = update()
+    assert moved.returncode == 0
+    assert "figure_tiny.nc: 1 of 2 arrays moved" in moved.stdout
+    assert "y: largest change 0.5, relative 0.25, BEYOND tolerance" in moved.stdout
+    # The stored array now agrees, the anchor does not: the book still cannot be built.
+    assert "the independent route gives 2" in build(project, "notebook").stderr
+
+    (project / "data" / "reference" / "figure_old.nc").write_bytes(stored.read_bytes())
+    assert "figure_old.nc: no notebook computes it any more; removed" in update().stdout
+    write_notebook(project / "notebooks" / "04_two.ipynb", "1 / 0")
+    before = stored.read_bytes()
+    compute(3.0)
+    stopped = update()
+    assert stopped.returncode == 1
+    assert "Nothing was replaced." in stopped.stdout
+    assert stored.read_bytes() == before
