@@ -172,7 +172,11 @@ class ContactRegion:
         if excess(0.0) >= 0.0:
             return 0.0
         # At the start of the flank the tooth top is at the shaper's tip but for rounding.
-        return root(excess, 0.0, self.shaper_tip_roll) if excess(self.shaper_tip_roll) > 0.0 else self.shaper_tip_roll
+        return (
+            root(excess, 0.0, self.shaper_tip_roll)
+            if excess(self.shaper_tip_roll) > 0.0
+            else self.shaper_tip_roll
+        )
 
     def _top_angle(self, roll: float) -> float:
         """Local pressure angle of the tooth top on the profile point `roll` > 0 [rad]; not below 0."""

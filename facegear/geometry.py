@@ -224,7 +224,7 @@ class Drive:
     def flank_start(self) -> float:
         """Least radius on the gear plane with a flank above the fillet [m]: R1, unless the teeth are many.
 
-        From some 45 pinion teeth on (at 5:1 and 25°) the critical point of undercutting lies above the tooth
+        From 48 pinion teeth on (at 5:1 and 25°) the critical point of undercutting lies above the tooth
         top; the tooth is then all fillet from R1 to here.
         """
         return self.contact_region.flank_start

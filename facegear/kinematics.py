@@ -162,7 +162,10 @@ class ContactPath:
         """Fractions of T0 in [0, 1), ascending from 0, between which the positions are smooth.
 
         0 (a pair enters), cr − ⌊cr⌋ (a pair leaves), and the instants where an end of a contact line changes
-        its bounding edge, all in closed form but for the corners of the contact region.
+        its bounding edge: corners of the contact region, closed forms at γ = 90°.
+
+        With so few teeth that the tooth top passes below the pinion's base circle (18 and less at 5:1 and 25°),
+        the end of the line reaches it with the square root of time: the piece is continuous there, not smooth.
         """
         entry, sweep = self.drive.entry_rotation, self.drive.entry_rotation - self.drive.exit_rotation
         kinks = [(entry - kink) / sweep * self.contact_ratio for kink in self.drive.kink_rotations]

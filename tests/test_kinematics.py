@@ -1,0 +1,285 @@
+"""Contact path, centroid, skew line and phases against closed forms, the definition and printed values."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from facegear.geometry import Drive
+from facegear.kinematics import ContactPath, SkewLine, mesh_period, phase_split
+
+CASE_I = Drive(26, 130, 3.175e-3)
+DRIVES = [
+    CASE_I,
+    Drive(31, 155, 3.175e-3),
+    Drive(14, 60, 2e-3, math.radians(20.0)),
+    Drive(60, 200, 1e-3),
+    Drive(28, 70, 3e-3, shaft_angle=math.radians(65.0)),
+    Drive(30, 95, 3e-3, shaft_angle=math.radians(115.0)),
+]
+
+
+def paths():
+    for drive in DRIVES:
+        yield pytest.param(ContactPath(drive), id=f"{drive.pinion_teeth}-Tregold")
+        yield pytest.param(
+            ContactPath(drive, drive.geometric_contact_ratio), id=f"{drive.pinion_teeth}-geometric"
+        )
+
+
+each_path = pytest.mark.parametrize("path", list(paths()))
+
+
+def chebyshev_tail(values):
+    """Relative size of the last eighth of the Chebyshev coefficients of samples at first-kind nodes."""
+    n = len(values)
+    nodes = np.cos(np.pi * (np.arange(n) + 0.5) / n)
+    k = np.polynomial.chebyshev.chebfit(nodes, values, n - 1)
+    return np.max(np.abs(k[-n // 8 :])) / np.max(np.abs(k))
+
+
+def nodes(n):
+    return np.cos(np.pi * (np.arange(n) + 0.5) / n)
+
+
+def test_breakpoints_of_case_i():
+    np.testing.assert_allclose(
+        ContactPath(CASE_I).breakpoints, [0.0, 0.55318, 0.55380, 0.71518], rtol=0, atol=5e-6
+    )
+
+
+def test_breakpoints_follow_from_the_closed_form_corners():
+    """γ = 90°: q(R1), q(R2) from the radii, the corners from the tooth-top plane and the tip circle."""
+    d = CASE_I
+    top, tip = d.tooth_top_distance / d.base_radius, math.sqrt((d.pinion_tip_radius / d.base_radius) ** 2 - 1)
+    q1, q2 = (math.acos(d.base_radius / (d.gear_ratio * r)) for r in (d.inner_radius, d.outer_radius))
+    on_top_1, on_top_2 = (q - (top - math.cos(q)) / math.sin(q) for q in (q1, q2))
+    sweep = on_top_2 - (q1 - tip)
+    for ratio in (d.contact_ratio, sweep * d.pinion_teeth / (2 * math.pi)):
+        kinks = [(on_top_2 - c) / sweep * ratio % 1.0 for c in (on_top_1, q2 - tip)]
+        expected = sorted([0.0, ratio % 1.0, *kinks])
+        np.testing.assert_allclose(ContactPath(d, ratio).breakpoints, expected, rtol=0, atol=1e-12)
+
+
+@each_path
+def test_centroid_is_smooth_on_pieces(path):
+    if len(path.drive.kink_rotations) == 3:
+        # Few teeth: the line's end runs down to the base circle with the square root of time, once a mesh cycle.
+        slow = [
+            chebyshev_tail(path.centroid_on_piece(i, nodes(48)).radius) for i in range(len(path.breakpoints))
+        ]
+        assert 1e-10 < max(slow) < 1e-5
+        return
+    for i in range(len(path.breakpoints)):
+        here = path.centroid_on_piece(i, nodes(48))
+        assert chebyshev_tail(here.radius) < 1e-13
+        assert chebyshev_tail(here.angle) < 1e-13
+        assert chebyshev_tail(path.pair_states_on_piece(i, nodes(48)).length.sum(axis=0)) < 1e-13
+
+
+@each_path
+def test_centroid_is_continuous_between_pieces(path):
+    count = len(path.breakpoints)
+    for i in range(count):
+        after, end = path.centroid_on_piece((i + 1) % count, -1.0), path.centroid_on_piece(i, 1.0)
+        assert after.radius == pytest.approx(end.radius, rel=1e-12)
+        assert after.angle == pytest.approx(end.angle, abs=1e-12)
+
+
+@each_path
+def test_breakpoints_are_where_the_slope_jumps(path):
+    """Chebyshev derivatives from both sides differ at entry and exit; a fit across does not converge."""
+    count = len(path.breakpoints)
+    for i in range(count):
+        start, end = (*path.breakpoints, 1.0)[i : i + 2]
+        if end - start < 0.02:
+            continue
+        across = path.centroid(start + 0.01 * nodes(48)).radius
+        assert chebyshev_tail(across) > 1e-11
+
+
+@each_path
+def test_centroid_is_the_weighted_mean_of_3_21(path):
+    """Every pair taken from the single-pair path at its own mesh time, summed by hand."""
+    drive, cr = path.drive, path.contact_ratio
+    for x in (0.0, 0.1, 0.37, 0.5, 0.83):
+        top, bottom = np.zeros(2), 0.0
+        for j in range(math.ceil(cr)):
+            own = (x + j) / cr
+            if own <= 1.0:
+                phi = drive.entry_rotation + own * (drive.exit_rotation - drive.entry_rotation)
+                line = drive.contact_lines(phi)
+                top += line.length * np.array([line.radius, line.angle])
+                bottom += line.length
+        np.testing.assert_allclose(path.centroid(x), top / bottom, rtol=0, atol=1e-13)
+
+
+@each_path
+def test_period_is_one_and_pieces_agree_with_the_whole(path):
+    x = np.linspace(0.001, 0.999, 41)
+    once = path.centroid(x)
+    for shift in (-3, 1, 7):
+        again = path.centroid(x + shift)
+        np.testing.assert_allclose(again.radius, once.radius, rtol=1e-12)
+        np.testing.assert_allclose(again.angle, once.angle, atol=1e-12)
+    for i, start in enumerate(path.breakpoints):
+        end = (*path.breakpoints, 1.0)[i + 1]
+        local = np.array([-0.9, 0.2, 0.7])
+        whole = path.centroid(start + 0.5 * (local + 1.0) * (end - start))
+        np.testing.assert_allclose(path.centroid_on_piece(i, local), whole, rtol=0, atol=1e-12)
+
+
+@each_path
+def test_contact_point_runs_outside_in(path):
+    point = path.contact_point(np.linspace(0.0, 1.0, 101))
+    assert np.all(np.diff(point.radius) < 0.0)
+    assert np.all(np.diff(point.angle) < 0.0)
+    np.testing.assert_allclose(point.length[[0, -1]], 0.0, atol=1e-14)
+    assert np.all(point.length[1:-1] > 0.0)
+    assert np.all(point.in_contact)
+
+
+def test_conjugate_arm_is_constant():
+    """The arm u cos q is r_b/m on every contact line: the mesh force's arm about the gear's axis never changes."""
+    lines = CASE_I.contact_lines(np.linspace(CASE_I.exit_rotation, CASE_I.entry_rotation, 11))
+    arm = -lines.contact_point[:, 1] * np.cos(lines.middle)
+    np.testing.assert_allclose(arm, CASE_I.base_radius / CASE_I.gear_ratio, rtol=1e-13)
+
+
+@pytest.mark.parametrize(("ratio", "printed"), [("contact_ratio", 830.0), ("geometric_contact_ratio", 75.0)])
+def test_speed_of_the_centroid_just_after_entry(ratio, printed):
+    """Case I at 1000 rpm: the two clocks move the centroid at some 830 and 75 m/s."""
+    path = ContactPath(CASE_I, getattr(CASE_I, ratio))
+    fit = np.polynomial.chebyshev.chebfit(nodes(48), path.centroid_on_piece(0, nodes(48)).radius, 47)
+    slope = np.polynomial.chebyshev.chebval(-1.0, np.polynomial.chebyshev.chebder(fit))
+    speed = slope * 2.0 / path.breakpoints[1] / mesh_period(CASE_I, 1000.0 * math.pi / 30.0)
+    assert abs(speed) == pytest.approx(printed, rel=0.02)
+
+
+def test_overlaid_pairs_lag_by_one_pitch():
+    path = ContactPath(CASE_I)
+    pitch = CASE_I.angular_pitch
+    rotation = np.linspace(0.0, 4 * pitch, 161)
+    states = path.overlaid(4, rotation)
+    assert states.radius.shape == (4, 161)
+    for j in range(1, 4):
+        np.testing.assert_array_equal(states.in_contact[j, 40 * j :], states.in_contact[0, : 161 - 40 * j])
+        np.testing.assert_allclose(
+            states.radius[j, 40 * j :], states.radius[0, : 161 - 40 * j], rtol=0, atol=1e-9
+        )
+    # One pair always, two for 55 % of the time.
+    number = states.in_contact[:, 80:120].sum(axis=0)
+    assert set(number) == {1, 2}
+    assert np.mean(number == 2) == pytest.approx(0.5532, abs=0.03)
+
+
+def test_skew_line_is_3_22():
+    line = SkewLine(CASE_I)
+    r1, r2, cr = CASE_I.inner_radius, CASE_I.outer_radius, CASE_I.contact_ratio
+    assert line.breakpoints == (0.0, pytest.approx(cr - 1.0, abs=1e-15))
+    for x in (0.0, 0.2, 0.5, 0.6, 0.99, -0.4, 5.5):
+        states = line.pair_states(x)
+        start = x - math.floor(x)
+        for j, age in enumerate((start, start + 1.0)):
+            assert states.in_contact[j] == (age <= cr)
+            expected = r2 - (r2 - r1) * age / cr if age <= cr else 0.0
+            assert states.radius[j] == pytest.approx(expected, rel=1e-13)
+            assert states.slope[j] == pytest.approx((r1 - r2) / cr if age <= cr else 0.0, rel=1e-13)
+    ends = [line.pair_states_on_piece(i, np.array([-1.0, 1.0])) for i in (0, 1)]
+    assert ends[0].radius[0, 0] == pytest.approx(r2, rel=1e-14)
+    assert ends[0].radius[1, 1] == pytest.approx(r1, rel=1e-12)
+    # The pair that left is gone on the closed next piece, its first instant included.
+    assert not ends[1].in_contact[1].any()
+
+
+def test_mesh_period_is_3_20():
+    assert mesh_period(CASE_I, 100.0) == pytest.approx(2 * math.pi / 13000.0, rel=1e-15)
+    for speed in (0, -1.0, math.nan, math.inf):
+        with pytest.raises(ValueError, match="gear_speed must be"):
+            mesh_period(CASE_I, speed)
+    with pytest.raises(TypeError, match="gear_speed must be a real number"):
+        mesh_period(CASE_I, "1000 rpm")
+
+
+def test_printed_positions_of_pinions_are_whole_teeth():
+    drive = Drive(31, 155, 3.175e-3)
+    assert round(math.degrees(3 * drive.angular_pitch), 2) == 6.97
+    for degrees, teeth in ((90.6, 39), (118.5, 51), (181.2, 78)):
+        assert round(math.degrees(teeth * drive.angular_pitch), 1) == degrees
+    split = phase_split(drive, np.array([39, 51, 78]) * drive.angular_pitch)
+    np.testing.assert_array_equal(split.teeth, [39, 51, 78])
+    np.testing.assert_array_equal(split.phase, 0.0)
+
+
+def test_phase_split_is_5_1_and_5_2():
+    drive = Drive(22, 110, 3.175e-3)
+    split = phase_split(drive, np.radians([0.0, 90.0, 120.0, 180.0, -90.0]))
+    np.testing.assert_array_equal(split.teeth, [0, 27, 36, 55, -28])
+    np.testing.assert_allclose(split.phase, [0.0, 0.5, 2 / 3, 0.0, 0.5], atol=1e-12)
+    total = split.positioning_angle + split.phasing_angle
+    np.testing.assert_allclose(total, np.radians([0.0, 90.0, 120.0, 180.0, -90.0]), atol=1e-12)
+    # 120° in radians times 130/2π is not a whole number by rounding only for tooth numbers divisible by three.
+    whole = phase_split(Drive(24, 120, 3e-3), np.radians([120.0, 240.0, 360.0]))
+    np.testing.assert_array_equal(whole.teeth, [40, 80, 120])
+    np.testing.assert_array_equal(whole.phase, 0.0)
+
+
+@settings(max_examples=25)
+@given(
+    pinion=st.integers(14, 60),
+    ratio=st.floats(1.6, 6.0),
+    shaft=st.floats(60.0, 120.0),
+    clock=st.sampled_from(["contact_ratio", "geometric_contact_ratio"]),
+    x=st.floats(-5.0, 5.0),
+)
+def test_invariants_of_random_paths(pinion, ratio, shaft, clock, x):
+    drive = Drive(pinion, math.ceil(pinion * ratio), 3e-3, shaft_angle=math.radians(shaft))
+    path = ContactPath(drive, getattr(drive, clock))
+    assert path.breakpoints[0] == 0.0
+    assert all(a < b < 1.0 for a, b in zip((-1.0, *path.breakpoints), path.breakpoints, strict=False))
+    count = len(path.breakpoints)
+    for i in range(count):
+        end, start = path.centroid_on_piece(i, 1.0), path.centroid_on_piece((i + 1) % count, -1.0)
+        assert end.radius == pytest.approx(start.radius, rel=1e-10)
+        assert end.angle == pytest.approx(start.angle, abs=1e-10)
+    now, later = path.centroid(x), path.centroid(x + 1.0)
+    assert now.radius == pytest.approx(later.radius, rel=1e-9)
+    reach = math.hypot(drive.outer_radius, drive.pinion_tip_radius)
+    assert drive.inner_radius <= now.radius <= reach
+
+
+@pytest.mark.parametrize("kind", [ContactPath, SkewLine])
+def test_bad_contact_ratios_are_refused(kind):
+    with pytest.raises(ValueError, match=r"contact_ratio must lie in \[1, 26\], got 0\.9 .*below 1"):
+        kind(CASE_I, 0.9)
+    for bad in (math.nan, math.inf, -1.5, 27.0):
+        with pytest.raises(ValueError, match="contact_ratio must"):
+            kind(CASE_I, bad)
+    with pytest.raises(TypeError, match="contact_ratio must be a real number"):
+        kind(CASE_I, "geometric")
+
+
+def test_bad_arguments_are_refused():
+    path = ContactPath(CASE_I)
+    with pytest.raises(ValueError, match=r"index must be below 4.*got 4"):
+        path.centroid_on_piece(4, 0.0)
+    with pytest.raises(ValueError, match=r"x must lie in \[-1, 1\].*1\.5"):
+        path.centroid_on_piece(0, [0.0, 1.5])
+    with pytest.raises(ValueError, match="x must be finite"):
+        path.centroid(math.nan)
+    with pytest.raises(ValueError, match=r"fraction must lie in \[0, 1\].*-0\.1"):
+        path.contact_point(-0.1)
+    with pytest.raises(ValueError, match="count must be at least 1"):
+        path.overlaid(0, 0.0)
+    with pytest.raises(ValueError, match="pinion_angles must be finite"):
+        phase_split(CASE_I, math.inf)
+
+
+def test_unit_contact_ratio_has_no_centroid_at_the_change():
+    path = ContactPath(CASE_I, 1.0)
+    assert path.breakpoints[0] == 0.0
+    assert np.isfinite(path.centroid(0.5).radius)
+    with pytest.raises(ValueError, match="contact_ratio must exceed 1"):
+        path.centroid_on_piece(0, -1.0)
