@@ -17,7 +17,6 @@ H, F, E, G do not depend on k, c, m, so a whole column of a map shares them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -28,6 +27,16 @@ from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
 
 ComplexArray = NDArray[np.complex128]
+
+#: Gauss nodes a panel.
+DEFAULT_NODES = 16
+#: Largest product of fastest frequency and panel length [rad].
+DEFAULT_PANEL_ANGLE = 10.0
+#: Interpolation error of a shape vector allowed on a panel, relative to its largest component.
+SHAPE_TOLERANCE = 1e-6
+
+# Panels on one smooth piece beyond which a shape vector is refused.
+_MOST_PANELS = 128
 
 
 class UnsuitableSystemError(ValueError):
@@ -99,7 +108,7 @@ class FreeModes:
             displacement=root @ vectors[:n] / scale,
             velocity=root @ vectors[n:],
             coordinates=np.concatenate([rows[:, :n] * scale @ to_energy, rows[:, n:] @ to_energy], axis=1),
-            input=rows[:, n:] @ inverse,
+            input=np.asarray(rows[:, n:] @ inverse, dtype=complex),
         )
 
     @property
@@ -148,7 +157,7 @@ def _panels_for_shape(function: PiecewiseChebyshev, nodes: int) -> tuple[float, 
     digits only.
     """
     x = _gauss(nodes)[0]
-    probe = np.linspace(0.0, 1.0, 2 * nodes + 1)
+    probe = (np.arange(4 * nodes) + 0.5) / (4 * nodes)
     vander = np.polynomial.legendre.legvander
     interpolate = vander(2 * probe - 1, nodes - 1) @ np.linalg.inv(vander(2 * x - 1, nodes - 1))
     longest = []
@@ -157,32 +166,42 @@ def _panels_for_shape(function: PiecewiseChebyshev, nodes: int) -> tuple[float, 
         while True:
             offsets = np.arange(count)[:, None]
             at_nodes = function(start + length * (offsets + x) / count)
-            inside = np.clip(length * (offsets + probe) / count, 1e-9 * length, (1.0 - 1e-9) * length)
-            error = np.abs(np.einsum("ij,pjn->pin", interpolate, at_nodes) - function(start + inside)).max()
+            between = function(start + length * (offsets + probe) / count)
+            error = np.abs(np.einsum("ij,pjn->pin", interpolate, at_nodes) - between).max()
             if error <= SHAPE_TOLERANCE * function.largest:
                 break
+            if count == _MOST_PANELS:
+                raise UnsuitableSystemError(
+                    f"a shape vector is too rough between breakpoints: {count} panels do not resolve it to "
+                    f"{SHAPE_TOLERANCE:.0e}"
+                )
             count += 1
         longest.append(length / count)
     return tuple(longest)
 
 
-#: Interpolation error of a shape vector allowed on a panel, relative to its largest component.
-SHAPE_TOLERANCE = 1e-6
-
-
 def _panel_edges(system: PeriodicSystem, nodes: int, fastest: float, panel_angle: float) -> Array:
-    """Ends of the panels: all breakpoints, and points between for fast motion and strongly curved shapes."""
+    """Return ends of panels: all breakpoints, and points between for fast motion and curved shapes."""
     ends = np.append(system.breakpoints[1:], 1.0)
     edges = []
     for start, end in zip(system.breakpoints, ends, strict=True):
         count = int(np.ceil((end - start) * fastest * system.period / panel_angle))
         for load in system.loads:
-            for function in [load.shape] if load.weight is None else [load.shape, load.weight]:
+            for function in _functions_to_resolve(load):
                 piece = np.searchsorted(function.breakpoints, (start + end) / 2.0, side="right") - 1
                 longest = _panels_for_shape(function, nodes)[piece]
                 count = max(count, int(np.ceil((end - start) / longest - 1e-9)))
         edges.append(np.linspace(start, end, max(count, 1), endpoint=False))
     return np.append(np.concatenate(edges), 1.0)
+
+
+def _functions_to_resolve(load: ContactLoad) -> list[PiecewiseChebyshev]:
+    functions = [load.shape]
+    if load.weight is not None:
+        functions.append(load.weight)
+    if load.rate == "total":
+        functions += [load.slope, load.curvature]
+    return functions
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,7 +341,13 @@ class FreeMotion:
         See :meth:`FreeModes.of`.
     """
 
-    def __init__(self, system: PeriodicSystem, column: LoadColumn, nodes: int, panel_angle: float) -> None:
+    def __init__(
+        self,
+        system: PeriodicSystem,
+        column: LoadColumn,
+        nodes: int = DEFAULT_NODES,
+        panel_angle: float = DEFAULT_PANEL_ANGLE,
+    ) -> None:
         self.system = system
         self.modes = FreeModes.of(system)
         samples = np.linspace(0.0, 1.0, 16, endpoint=False)
@@ -403,7 +428,7 @@ class FreeMotion:
 
 def _quadratic(mass: Array, vectors: Array) -> Array:
     """φᵀ M⁻¹ φ of each row, shape (m,)."""
-    return np.einsum("mi,mi->m", vectors, np.linalg.solve(mass, vectors.T).T)
+    return np.asarray(np.einsum("mi,mi->m", vectors, np.linalg.solve(mass, vectors.T).T), dtype=float)
 
 
 def chain(steps: Array) -> Array:
@@ -415,7 +440,9 @@ def chain(steps: Array) -> Array:
     return steps[:, 0]
 
 
-def transition_matrix(system: PeriodicSystem, nodes: int = 16, panel_angle: float = 10.0) -> Array:
+def transition_matrix(
+    system: PeriodicSystem, nodes: int = DEFAULT_NODES, panel_angle: float = DEFAULT_PANEL_ANGLE
+) -> Array:
     """Floquet transition matrix of the state (q, q̇), shape (2n, 2n).
 
     Parameters
@@ -440,130 +467,3 @@ def transition_matrix(system: PeriodicSystem, nodes: int = 16, panel_angle: floa
     motion = FreeMotion(system, column, nodes, panel_angle)
     matrix = motion.transition_matrices(column)[0]
     return np.asarray(motion.modes.state_from_real() @ matrix @ motion.modes.real_from_state(), dtype=float)
-
-
-def column_transition_matrices(
-    system: PeriodicSystem,
-    column: LoadColumn,
-    nodes: int = 16,
-    panel_angle: float = 10.0,
-    tolerance: float = 1e-11,
-) -> Array:
-    """Transition matrices along a column of a map, in coordinates fixed along it.
-
-    The matrix is entire in stiffness and damping and analytic in mass ≥ 0. Where the parameters run along a
-    straight line it is therefore computed at Chebyshev points and its entries are interpolated, with more points
-    until the last coefficients are below the tolerance.
-
-    Parameters
-    ----------
-    system : PeriodicSystem
-    column : LoadColumn
-        V values.
-    tolerance : float
-        Size of the last Chebyshev coefficients relative to the largest entry or 1.
-
-    Returns
-    -------
-    array, shape (V, 2n, 2n)
-        Similar to the transition matrices of the state (q, q̇): same eigenvalues.
-    """
-    motion = FreeMotion(system, column, nodes, panel_angle)
-    line = _StraightLine.through(column, float(motion.mobility.max(initial=0.0)))
-    if line is None:
-        return motion.transition_matrices(column)
-    return interpolate(lambda t: motion.transition_matrices(line.column(t)), line.variable, tolerance)
-
-
-@dataclass(frozen=True, eq=False)
-class _StraightLine:
-    """Load parameters start + s (end − start), and the variable t in which matrices are interpolated.
-
-    Without a mass along the line t = s. With one, t = 1/(1 + b m), b the mobility of the contact: the matrix then
-    stays smooth however heavy the mass.
-    """
-
-    start: Array
-    end: Array
-    variable: Array
-    mobility: float
-    heaviest: int | None
-
-    @classmethod
-    def through(cls, column: LoadColumn, mobility: float) -> _StraightLine | None:
-        """Find the line through a column, or None if its values do not lie on one."""
-        values = column.stacked()
-        span = np.ptp(values, axis=0)
-        size = np.abs(values).max(axis=0)
-        relative = span / np.where(size > 0.0, size, 1.0)
-        if relative.size == 0 or relative.max() == 0.0:
-            return None
-        leader = int(relative.argmax())
-        start, end = values[values[:, leader].argmin()], values[values[:, leader].argmax()]
-        s = (values[:, leader] - start[leader]) / (end[leader] - start[leader])
-        if (np.abs(start + s[:, None] * (end - start) - values) > 1e-13 * size).any():
-            return None
-        change = np.abs(end - start)[: column.mass.shape[1]]
-        heaviest = int(change.argmax()) if change.max(initial=0.0) > 0.0 else None
-        line = cls(start, end, s, mobility, heaviest)
-        if heaviest is None:
-            return line
-        mass = start[heaviest] + s * (end - start)[heaviest]
-        return cls(start, end, 1.0 / (1.0 + mobility * mass), mobility, heaviest)
-
-    def column(self, t: Array) -> LoadColumn:
-        """Load parameters at values of the variable."""
-        s = t
-        if self.heaviest is not None:
-            mass = (1.0 / t - 1.0) / self.mobility
-            s = (mass - self.start[self.heaviest]) / (self.end - self.start)[self.heaviest]
-        return LoadColumn.from_stacked(self.start + s[:, None] * (self.end - self.start))
-
-
-def interpolate(evaluate: Callable[[Array], Array], points: Array, tolerance: float) -> Array:
-    """Evaluate an analytic matrix function of one variable at many points by Chebyshev interpolation.
-
-    Parameters
-    ----------
-    evaluate : callable
-        (K,) values -> (K, d, d) matrices.
-    points : array, shape (V,)
-    tolerance : float
-        Size of the last coefficients relative to the largest entry or 1, at which to stop.
-
-    Returns
-    -------
-    array, shape (V, d, d)
-        Evaluated point by point instead, if that takes no more evaluations.
-    """
-    low, high = float(points.min()), float(points.max())
-    middle, half = (low + high) / 2.0, (high - low) / 2.0
-    degree = 8
-    if degree + 1 >= points.size or half == 0.0:
-        return evaluate(points)
-    values = evaluate(middle + half * np.cos(np.pi * np.arange(degree + 1) / degree))
-    while True:
-        coefficients = _lobatto_coefficients(values)
-        sizes = np.abs(coefficients).max(axis=(1, 2))
-        # Two coefficients, in case one is small by accident.
-        if sizes[-2:].max() <= tolerance * max(float(np.abs(values).max()), 1.0):
-            break
-        if 2 * degree + 1 >= points.size:
-            return evaluate(points)
-        # The points of half the spacing contain the present ones.
-        between = evaluate(middle + half * np.cos(np.pi * (np.arange(degree) + 0.5) / degree))
-        finer = np.empty((2 * degree + 1, *values.shape[1:]))
-        finer[0::2], finer[1::2] = values, between
-        values, degree = finer, 2 * degree
-    basis = np.polynomial.chebyshev.chebvander(np.clip((points - middle) / half, -1.0, 1.0), degree)
-    return np.tensordot(basis, coefficients, axes=1)
-
-
-def _lobatto_coefficients(values: Array) -> Array:
-    """Chebyshev coefficients from values at cos(π j/K), j = 0 ... K, along the first axis."""
-    degree = values.shape[0] - 1
-    ends = np.ones(degree + 1)
-    ends[[0, -1]] = 0.5
-    order = np.arange(degree + 1)
-    transform = np.cos(np.pi * np.outer(order, order) / degree) * ends * ends[:, None] * (2.0 / degree)
-    return np.tensordot(transform, values, axes=1)

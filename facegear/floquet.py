@@ -13,22 +13,20 @@ this module is a small frozen dataclass that turns a system into its Φ:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import expm
 
 from facegear import collocation
+from facegear.parameters import integer_at_least, within
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
+from facegear.stepping import Family, aligned_edges, gauss_magnus, midpoint
 
 ComplexArray = NDArray[np.complex128]
-
-# Entries of the largest intermediate stack of matrices; keeps the memory of a column of a map near 100 MB.
-_STACK_ENTRIES = 2_000_000
 
 
 class Method(Protocol):
@@ -58,7 +56,7 @@ class Stepwise:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        _check_count(self.sub_intervals)
+        integer_at_least("sub_intervals", self.sub_intervals, 1)
 
     def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
         """See :class:`Method`; refuses the velocity kicks of a contact mass with total rate."""
@@ -67,9 +65,9 @@ class Stepwise:
                 "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
                 "which equal sub-intervals cannot place; use AlignedStepwise, Magnus or Collocation"
             )
-        family = _Family(systems)
+        family = Family(systems)
         edges = np.linspace(0.0, 1.0, self.sub_intervals + 1)
-        return family.product(edges, _midpoint)
+        return family.product(edges, midpoint)
 
     def refined(self) -> Method:
         """Aligned sub-intervals: halving equal ones can look converged where it is not (fraction 9/16)."""
@@ -89,12 +87,12 @@ class AlignedStepwise:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        _check_count(self.sub_intervals)
+        integer_at_least("sub_intervals", self.sub_intervals, 1)
 
     def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
         """See :class:`Method`."""
-        family = _Family(systems)
-        return family.product(_aligned_edges(family.breakpoints, self.sub_intervals, 1), _midpoint)
+        family = Family(systems)
+        return family.product(aligned_edges(family.breakpoints, self.sub_intervals), midpoint)
 
     def refined(self) -> Method:
         """Twice as many sub-intervals."""
@@ -117,12 +115,12 @@ class Magnus:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        _check_count(self.sub_intervals)
+        integer_at_least("sub_intervals", self.sub_intervals, 1)
 
     def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
         """See :class:`Method`."""
-        family = _Family(systems)
-        return family.product(_aligned_edges(family.breakpoints, self.sub_intervals, 1), _gauss_magnus)
+        family = Family(systems)
+        return family.product(aligned_edges(family.breakpoints, self.sub_intervals), gauss_magnus)
 
     def refined(self) -> Method:
         """Twice as many sub-intervals."""
@@ -147,19 +145,18 @@ class AdaptiveMagnus:
     tolerance: float = 1e-10
 
     def __post_init__(self) -> None:
-        if not 1e-13 <= self.tolerance <= 1e-2:
-            raise ValueError(f"tolerance must lie between 1e-13 and 1e-2; got {self.tolerance!r}")
+        within("tolerance", self.tolerance, 1e-13, 1e-2)
 
     def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
         """See :class:`Method`."""
-        family = _Family(systems)
+        family = Family(systems)
         start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
         factor = 1
-        coarse = family.product(_aligned_edges(family.breakpoints, start, factor), _gauss_magnus)
+        coarse = family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)
         while True:
             factor *= 2
-            edges = _aligned_edges(family.breakpoints, start, factor)
-            fine = family.product(edges, _gauss_magnus)
+            edges = aligned_edges(family.breakpoints, start, factor)
+            fine = family.product(edges, gauss_magnus)
             # The method is symmetric: its error runs in even powers, h⁴ + h⁶, so one extrapolation leaves h⁶.
             correction = (fine - coarse) / 15.0
             size = np.maximum(np.abs(fine).max(axis=(1, 2)), 1.0)
@@ -173,7 +170,7 @@ class AdaptiveMagnus:
             coarse = fine
 
     def refined(self) -> Method:
-        """A tenth of the tolerance, which halves the sub-intervals at least once more or extrapolates deeper."""
+        """Return a hundredth of the tolerance, which halves the sub-intervals at least once more."""
         return AdaptiveMagnus(max(self.tolerance / 100.0, 1e-13))
 
 
@@ -194,16 +191,19 @@ class Collocation:
         When used on a system whose free motion has rigid-body, overdamped or defective modes.
     """
 
-    nodes: int = 16
-    panel_angle: float = 10.0
+    nodes: int = collocation.DEFAULT_NODES
+    panel_angle: float = collocation.DEFAULT_PANEL_ANGLE
+
+    def __post_init__(self) -> None:
+        integer_at_least("nodes", self.nodes, 2)
+        # Beyond 14 rad the kernel of a heavily damped mode loses its digits.
+        within("panel_angle", self.panel_angle, 0.1, 14.0)
 
     def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
         """See :class:`Method`."""
-        scales = [_scaling(system) for system in systems]
+        scale = Family(systems).scale
         matrices = [collocation.transition_matrix(system, self.nodes, self.panel_angle) for system in systems]
-        return np.stack(
-            [scale @ matrix @ np.linalg.inv(scale) for scale, matrix in zip(scales, matrices, strict=True)]
-        )
+        return np.asarray(scale @ np.stack(matrices) @ np.linalg.inv(scale), dtype=float)
 
     def refined(self) -> Method:
         """Half as many nodes again and shorter panels."""
@@ -230,10 +230,7 @@ def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> A
         Where the period's origin is a breakpoint with a velocity kick, Φ runs from just before it.
     """
     chosen = default_method(system) if method is None else method
-    scale = _scaling(system)
-    return np.asarray(
-        np.linalg.solve(scale, chosen.scaled_transition_matrices([system])[0]) @ scale, dtype=float
-    )
+    return np.asarray(transition_matrices([system], chosen)[0])
 
 
 def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
@@ -244,12 +241,12 @@ def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None
     systems : sequence of PeriodicSystem
         V systems; their periods, constant matrices and load parameters may differ.
     method : Method, optional
-        :class:`AdaptiveMagnus` if left out, the fast way for small systems.
+        :class:`AdaptiveMagnus` if left out, which takes the whole family at once.
 
     Returns
     -------
     array, shape (V, 2n, 2n)
-        In the state (q, q̇) of each system.
+        In the state (q, q̇).
 
     Raises
     ------
@@ -258,8 +255,8 @@ def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None
     """
     chosen = AdaptiveMagnus() if method is None else method
     scaled = chosen.scaled_transition_matrices(systems)
-    scale = np.stack([_scaling(system) for system in systems])
-    return np.asarray(np.linalg.solve(scale, scaled) @ scale, dtype=float)
+    scale = Family(systems).scale
+    return np.asarray(np.linalg.solve(scale, scaled @ scale), dtype=float)
 
 
 def multipliers(system: PeriodicSystem, method: Method | None = None) -> ComplexArray:
@@ -271,7 +268,7 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
     """
     chosen = default_method(system) if method is None else method
     values = _eigenvalues(chosen.scaled_transition_matrices([system]))[0]
-    return values[np.argsort(-np.abs(values), kind="stable")]
+    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")], dtype=complex)
 
 
 def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
@@ -286,7 +283,8 @@ def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = No
     As :func:`transition_matrices`, without turning back to the state (q, q̇).
     """
     chosen = AdaptiveMagnus() if method is None else method
-    return np.abs(_eigenvalues(chosen.scaled_transition_matrices(systems))).max(axis=-1)
+    values = _eigenvalues(chosen.scaled_transition_matrices(systems))
+    return np.asarray(np.abs(values).max(axis=-1), dtype=float)
 
 
 def error_estimate(system: PeriodicSystem, method: Method) -> float:
@@ -311,115 +309,7 @@ def error_estimate(system: PeriodicSystem, method: Method) -> float:
     )
 
 
-def _check_count(sub_intervals: int) -> None:
-    if (
-        isinstance(sub_intervals, bool)
-        or not isinstance(sub_intervals, (int, np.integer))
-        or sub_intervals < 1
-    ):
-        raise ValueError(f"sub_intervals must be a whole number >= 1; got {sub_intervals!r}")
-
-
 def _eigenvalues(matrices: Array) -> ComplexArray:
     if not np.isfinite(matrices).all():
         raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
     return np.asarray(np.linalg.eigvals(matrices), dtype=complex)
-
-
-def _aligned_edges(breakpoints: Array, sub_intervals: int, factor: int) -> Array:
-    """Ends of sub-intervals that contain every breakpoint (0 among them), ascending from 0 to 1."""
-    ends = np.append(breakpoints[1:], 1.0)
-    parts = [
-        np.linspace(start, end, factor * int(np.ceil((end - start) * sub_intervals)), endpoint=False)
-        for start, end in zip(breakpoints, ends, strict=True)
-    ]
-    return np.append(np.concatenate(parts), 1.0)
-
-
-def _frequency_scale(system: PeriodicSystem) -> float:
-    """Return a typical fast frequency [rad/s] of the system: √(‖K‖/‖M‖) of the mean matrices."""
-    middle = system.breakpoints + np.diff(np.append(system.breakpoints, 1.0)) / 2.0
-    stiffness = np.linalg.solve(system.mass_matrix(middle), system.stiffness_matrix(middle))
-    fastest = float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
-    return fastest if fastest > 0.0 else 1.0 / system.period
-
-
-def _scaling(system: PeriodicSystem) -> Array:
-    """S of the scaled state S X = (ω Lᵀq, Lᵀq̇), M = L Lᵀ: both halves then have the size of a root energy."""
-    factor = np.linalg.cholesky(system.mass).T
-    zero = np.zeros_like(factor)
-    return np.block([[_frequency_scale(system) * factor, zero], [zero, factor]])
-
-
-Step = Callable[[Array, Array, Callable[[Array], Array]], Array]
-
-
-def _midpoint(start: Array, length: Array, state: Callable[[Array], Array]) -> Array:
-    """Exponent h A(midpoint) of each sub-interval (2-9)."""
-    return state(start + length / 2.0) * length[:, None, None]
-
-
-def _gauss_magnus(start: Array, length: Array, state: Callable[[Array], Array]) -> Array:
-    """Fourth-order Magnus exponent of each sub-interval."""
-    offset = np.sqrt(3.0) / 6.0
-    first = state(start + (0.5 - offset) * length) * length[:, None, None]
-    second = state(start + (0.5 + offset) * length) * length[:, None, None]
-    commutator = first @ second - second @ first
-    return (first + second) / 2.0 - (np.sqrt(3.0) / 12.0) * commutator
-
-
-class _Family:
-    """Systems with common size and breakpoints, stacked for batched linear algebra, in scaled coordinates."""
-
-    def __init__(self, systems: Sequence[PeriodicSystem]) -> None:
-        if not systems:
-            raise ValueError("systems must hold at least one PeriodicSystem; got none")
-        first = systems[0]
-        for system in systems[1:]:
-            if (
-                system.size != first.size
-                or len(system.loads) != len(first.loads)
-                or system.breakpoints.shape != first.breakpoints.shape
-                or np.abs(system.breakpoints - first.breakpoints).max() > 1e-12
-            ):
-                raise ValueError("systems must have the same size, number of loads and breakpoints")
-        self.systems = systems
-        self.size = first.size
-        self.breakpoints = first.breakpoints
-        self.periods = np.array([system.period for system in systems])
-        self.scale = np.stack([_scaling(system) for system in systems])
-        self.inverse_scale = np.linalg.inv(self.scale)
-        self.kicks = [dict(system.velocity_kicks()) for system in systems]
-
-    @property
-    def fastest_angle(self) -> float:
-        """Largest ω T0 of the family [rad]."""
-        return max(_frequency_scale(system) * system.period for system in self.systems)
-
-    def state_matrices(self, fraction: Array) -> Array:
-        """T0 S A S⁻¹ at fractions, shape (V, m, 2n, 2n)."""
-        stack = np.stack([system.state_matrix(fraction) for system in self.systems])
-        stack = self.scale[:, None] @ stack @ self.inverse_scale[:, None]
-        return stack * self.periods[:, None, None, None]
-
-    def product(self, edges: Array, step: Step) -> Array:
-        """Product of the exponentials of `step` over the sub-intervals between `edges`, kicks put in."""
-        chunk = max(1, _STACK_ENTRIES // (len(self.systems) * 4 * self.size**2))
-        total = np.broadcast_to(np.eye(2 * self.size), (len(self.systems), 2 * self.size, 2 * self.size))
-        start, length = edges[:-1], np.diff(edges)
-        for begin in range(0, start.size, chunk):
-            part = slice(begin, begin + chunk)
-            steps = expm(step(start[part], length[part], self.state_matrices))
-            self._put_in_kicks(steps, start[part])
-            total = collocation.chain(steps) @ total
-        return total
-
-    def _put_in_kicks(self, steps: Array, start: Array) -> None:
-        for number, kicks in enumerate(self.kicks):
-            for at, kick in kicks.items():
-                for place in np.flatnonzero(np.abs(start - at) < 1e-12):
-                    jump = np.eye(2 * self.size)
-                    jump[self.size :, : self.size] += kick
-                    steps[number, place] = (
-                        steps[number, place] @ self.scale[number] @ jump @ self.inverse_scale[number]
-                    )

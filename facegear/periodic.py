@@ -83,12 +83,12 @@ class ContactLoad:
                     f"and a jump of {jump:.3g}: a mass cannot be moved by a finite distance in no time"
                 )
 
-    @cached_property
+    @property
     def slope(self) -> PiecewiseChebyshev:
         """dφ/dx, x the fraction of the period."""
         return self.shape.derivative(1)
 
-    @cached_property
+    @property
     def curvature(self) -> PiecewiseChebyshev:
         """d²φ/dx², x the fraction of the period, impulses at slope jumps left out."""
         return self.shape.derivative(2)

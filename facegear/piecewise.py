@@ -221,11 +221,16 @@ class PiecewiseChebyshev:
 
     def derivative(self, order: int = 1) -> PiecewiseChebyshev:
         """Exact derivative with respect to the fraction of the period, piece by piece (jumps left out)."""
-        coefficients = self.coefficients
+        function = self
         for _ in range(order):
-            if coefficients.shape[1] == 1:
-                return PiecewiseChebyshev(self.breakpoints, np.zeros_like(coefficients))
-            coefficients = chebyshev.chebder(coefficients, axis=1) * (2.0 / self.lengths)[:, None, None]
+            function = function._slope
+        return function
+
+    @cached_property
+    def _slope(self) -> PiecewiseChebyshev:
+        if self.degree == 0:
+            return PiecewiseChebyshev(self.breakpoints, np.zeros_like(self.coefficients))
+        coefficients = chebyshev.chebder(self.coefficients, axis=1) * (2.0 / self.lengths)[:, None, None]
         return PiecewiseChebyshev(self.breakpoints, coefficients)
 
     def shift(self, phase: float) -> PiecewiseChebyshev:
