@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,14 +27,16 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Interval = tuple[float, float, float]
 
-# Relative size below which a rate, a coupling or the imaginary part of a product is rounding.
+# Relative sizes, to the frequencies, below which a rate or a coupling is rounding; couplings that count leave
+# room above the latter for the phase of their products to be known.
 _ROUNDING = 1e-11
+_LEAST_COUPLING = 1e-10
 # An eigenvalue joins a block if its detuning is at most this many times its coupling to it: leaving it out
 # then changes growth rates by about 1/REACH² of the coupling, taking it in needlessly by terms of second
 # order.
 REACH = 10.0
 # Resolution of the search for unstable intervals of blocks of three and more, in points.
-_SEARCH_POINTS = 1201
+_SEARCH_POINTS = 601
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +83,14 @@ class ResonanceBlock:
             return np.asarray(mean.real + np.abs(root.real))
         return np.asarray(np.linalg.eigvals(matrix).real.max(axis=-1))
 
+    @cached_property
+    def growth_bound(self) -> float:
+        """Bound of the growth rate over all parametric frequencies [1/s]: the numerical range of the matrix.
+
+        The detunings are imaginary and on the diagonal, so that they drop out of its Hermitian part.
+        """
+        return float(np.linalg.eigvalsh((self.coupling + self.coupling.conj().T) / 2)[-1])
+
 
 def averaged_block(
     expansion: ModalExpansion, members: tuple[int, ...], shifts: tuple[int, ...]
@@ -96,7 +107,8 @@ def averaged_block(
 
 def coupled(expansion: ModalExpansion, a: int, b: int, s: int) -> bool:
     """Tell whether harmonic s couples two signed eigenvalues by more than rounding."""
-    return bool(expansion.strength[expansion.order + s, a, b] > _ROUNDING * expansion.frequencies[-1])
+    strength = expansion.strength[expansion.order + s, a, b]
+    return bool(strength > _LEAST_COUPLING * expansion.frequencies[-1])
 
 
 def congruent_block(expansion: ModalExpansion, a: int, b: int, s: int, frequency: float) -> ResonanceBlock:
@@ -118,7 +130,7 @@ def congruent_block(expansion: ModalExpansion, a: int, b: int, s: int, frequency
                 ),
                 default=0.0,
             )
-            if reach > _ROUNDING * expansion.frequencies[-1] and detuning[c] <= REACH * reach:
+            if reach > _LEAST_COUPLING * expansion.frequencies[-1] and detuning[c] <= REACH * reach:
                 members.append(c)
                 shifts.append(int(turns[c]))
                 candidates.remove(c)
@@ -157,6 +169,8 @@ def driving_pair(block: ResonanceBlock, frequency: float) -> tuple[int, int]:
 
 def unstable_intervals(block: ResonanceBlock, frequency: float) -> Iterator[Interval]:
     """Intervals (lower, upper, peak) of the parametric frequency in which a block grows, around ``frequency``."""
+    if block.growth_bound <= _ROUNDING * float(np.abs(block.coupling).max()):
+        return iter(())
     return _pair_intervals(block) if len(block.members) == 2 else _search_intervals(block, frequency)
 
 
@@ -170,7 +184,9 @@ def _pair_intervals(block: ResonanceBlock) -> Iterator[Interval]:
     rounding = _ROUNDING * abs(distance)
     # In the symbols of the derivation the first member, turning with −Λ, is the coordinate j.
     f_j, f_k = (0.0 if abs(d) <= rounding else float(d) for d in -2 * np.diag(block.coupling).real)
-    real, imag = product.real, product.imag if abs(product.imag) > 1e-9 * abs(product) else 0.0
+    # Each of the two factors is known to about 1e-12 of the frequencies.
+    known = 1e-9 + 1e-12 * float(np.abs(block.signed_frequencies).max()) / abs(product) ** 0.5
+    real, imag = product.real, product.imag if abs(product.imag) > known * abs(product) else 0.0
     if f_k > 0 and f_j > 0:
         low, high = border_function()(f_k, f_j, real, imag)
     elif f_k == f_j and imag == 0:
@@ -197,7 +213,7 @@ def _peak(block: ResonanceBlock, lower: float, upper: float) -> float:
         lambda x: -float(block.growth_rate(x)),
         bounds=(lower, upper),
         method="bounded",
-        options={"xatol": 1e-12 * upper},
+        options={"xatol": 1e-10 * upper},
     )
     return float(result.x)
 
@@ -215,10 +231,10 @@ def _search_intervals(block: ResonanceBlock, frequency: float) -> Iterator[Inter
     fine = (centres[:, None] + strength[:, None] * np.linspace(-3, 3, 61)).ravel()
     grid = np.unique(np.concatenate([np.linspace(frequency - half, frequency + half, _SEARCH_POINTS), fine]))
     growth = block.growth_rate(grid)
-    inner = (
-        np.flatnonzero((growth[1:-1] >= growth[:-2]) & (growth[1:-1] >= growth[2:]) & (growth[1:-1] < -level))
-        + 1
-    )
+    # Between samples a narrow maximum can hide; a plateau of equal growth rates, all rounding, cannot.
+    rise = growth[1:-1] - np.maximum(growth[:-2], growth[2:])
+    depth = growth[1:-1] - np.minimum(growth[:-2], growth[2:])
+    inner = 1 + np.flatnonzero((rise >= 0) & (depth > level) & (growth[1:-1] < -level))
     hidden = [_peak(block, grid[i - 1], grid[i + 1]) for i in inner]
     grid = np.unique(np.concatenate([grid, hidden]))
     growth = block.growth_rate(grid)

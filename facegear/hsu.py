@@ -16,11 +16,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 from facegear.averaging import (
     REACH,
@@ -101,17 +101,17 @@ class SpeedBand:
     Attributes
     ----------
     lower, upper : float
-        Borders, in the unit of the speeds asked for; infinite as in :class:`ResonanceBand`, and cut to the range
-        asked for only by being left out of it.
-    crossing : float
+        Borders, in the unit of the speeds asked for; 0 and infinite as in :class:`ResonanceBand`.
+    centre : float
         Speed at which sω equals the combination of natural frequencies.
     band : ResonanceBand
-        The band of the parametric frequency with all matrices taken at ``crossing``.
+        The band of the parametric frequency with all matrices taken at a crossing of sω with its pair, or with
+        another pair of the same block.
     """
 
     lower: float
     upper: float
-    crossing: float
+    centre: float
     band: ResonanceBand
 
     @property
@@ -159,16 +159,9 @@ def resonance_bands(system: PeriodicSystem | ModalExpansion, *, order: int = 6) 
         if key not in seen:
             seen.add(key)
             bands += _block_bands(expansion, block, centre)
-    # Blocks that differ in a weakly coupled member find the same band twice; the larger block has it better.
+    # The larger of two blocks that find the same band has it better.
     bands.sort(key=lambda band: -len(band.block.members))
-    kept: list[ResonanceBand] = []
-    for band in bands:
-        if not any(
-            band.label == other.label and band.lower <= other.upper and other.lower <= band.upper
-            for other in kept
-        ):
-            kept.append(band)
-    return tuple(sorted(kept, key=lambda band: (band.centre, band.label)))
+    return tuple(sorted(_without_repeats(bands), key=lambda band: (band.centre, band.label)))
 
 
 def growth_rate_at(system: PeriodicSystem | ModalExpansion, *, order: int | None = None) -> float:
@@ -239,7 +232,7 @@ def band_speeds(
     Returns
     -------
     tuple of SpeedBand
-        Ascending by crossing.
+        Ascending by centre.
 
     Raises
     ------
@@ -254,59 +247,79 @@ def band_speeds(
     if isinstance(points, bool) or points != int(points) or points < 2:
         raise ValueError(f"points = {points!r}: valid is a whole number, at least 2")
 
-    def frequencies(speed: float) -> tuple[Array, float]:
-        mean = expand(system_at(speed), 1)
-        return mean.signed_frequencies, mean.parametric_frequency
-
     grid = np.linspace(low, high, int(points))
-    sampled = [frequencies(float(speed)) for speed in grid]
-    sizes = {len(signed) // 2 for signed, _ in sampled}
+    sampled = [expand(system_at(float(speed)), 1) for speed in grid]
+    sizes = {len(mean.frequencies) for mean in sampled}
     if len(sizes) > 1:
         raise ValueError(
             f"speeds = {speeds!r}: the number of oscillating modes changes in this range (between {min(sizes)} and "
             f"{max(sizes)}); give ranges in which it stays"
         )
-    signed = np.array([row for row, _ in sampled])
-    parametric = np.array([value for _, value in sampled])
+    signed = np.array([mean.signed_frequencies for mean in sampled])
+    parametric = np.array([mean.parametric_frequency for mean in sampled])
 
-    found: list[SpeedBand] = []
+    found: list[tuple[bool, SpeedBand]] = []
     for a, b in _pairs(signed.shape[1] // 2):
         for s in range(1, order + 1):
             detuning = s * parametric - (signed[:, a] - signed[:, b])
 
-            def residual(speed: float, a: int = a, b: int = b, s: int = s) -> float:
-                row, value = frequencies(speed)
-                return float(s * value - (row[a] - row[b]))
-
             for i in np.flatnonzero(np.sign(detuning[:-1]) * np.sign(detuning[1:]) <= 0):
                 if detuning[i + 1] == 0 and i + 2 < len(grid):
                     continue  # The next interval begins with this root.
-                crossing = float(brentq(residual, grid[i], grid[i + 1], xtol=1e-10 * high))
-                found += _bands_near(system_at, expand, crossing, (a, b, s), order)
-    found.sort(key=lambda band: (-len(band.band.block.members), band.crossing))
-    kept: list[SpeedBand] = []
-    for band in found:
+                bracket = ((grid[i], detuning[i]), (grid[i + 1], detuning[i + 1]))
+                found += _bands_near(system_at, expand, bracket, (a, b, s), order)
+    # A band is best known from the crossing of its own pair, then from the larger block.
+    found.sort(key=lambda item: (not item[0], -len(item[1].band.block.members)))
+    bands = _without_repeats([band for _, band in found])
+    return tuple(sorted(bands, key=lambda band: (band.centre, band.label)))
+
+
+_Band = TypeVar("_Band", ResonanceBand, SpeedBand)
+
+
+def _without_repeats(bands: list[_Band]) -> list[_Band]:
+    """Keep the first of bands that overlap and have the same label."""
+    kept: list[_Band] = []
+    for band in bands:
         if not any(
             band.label == other.label and band.lower <= other.upper and other.lower <= band.upper
             for other in kept
         ):
             kept.append(band)
-    return tuple(sorted(kept, key=lambda band: (band.crossing, band.label)))
+    return kept
 
 
 def _bands_near(
     system_at: Callable[[float], PeriodicSystem],
     expand: Callable[[PeriodicSystem, int], ModalExpansion],
-    crossing: float,
+    bracket: tuple[tuple[float, float], tuple[float, float]],
     pair: tuple[int, int, int],
     order: int,
-) -> Iterator[SpeedBand]:
-    """Bands of the block around one crossing, their borders followed with the matrices of each speed."""
-    expansion = expand(system_at(crossing), order)
+) -> Iterator[tuple[bool, SpeedBand]]:
+    """Bands of the block around one crossing, and whether it is the crossing of the pair that drives them.
+
+    Borders are followed with the matrices of each speed.
+    """
     a, b, s = pair
+
+    def residual(speed: float) -> float:
+        mean = expand(system_at(speed), 1)
+        return float(
+            s * mean.parametric_frequency - (mean.signed_frequencies[a] - mean.signed_frequencies[b])
+        )
+
+    # The chord is good enough to see whether there is anything to be found.
+    (low, at_low), (high, at_high) = bracket
+    crossing = low if at_low == at_high else low - at_low * (high - low) / (at_high - at_low)
+    expansion = expand(system_at(crossing), order)
     if not coupled(expansion, a, b, s):
         return
     _refuse_unstable_mean(expansion)
+    if congruent_block(expansion, a, b, s, expansion.parametric_frequency).growth_bound <= 0:
+        return
+    if at_low * at_high < 0:
+        crossing = float(brentq(residual, low, high, xtol=1e-10 * high))
+        expansion = expand(system_at(crossing), order)
     block = congruent_block(expansion, a, b, s, expansion.parametric_frequency)
 
     def growth(speed: float) -> float:
@@ -316,8 +329,12 @@ def _bands_near(
     level = _ROUNDING * float(np.abs(block.coupling).max())
     per_speed = crossing / expansion.parametric_frequency
     for band in _block_bands(expansion, block, expansion.parametric_frequency):
-        # The frozen band scaled to speed brackets the true one after a few widenings.
+        # The frozen band scaled to speed is where the true one begins to be looked for.
         peak = band.peak * per_speed
+        if growth(peak) <= level and band.lower > 0 and math.isfinite(band.upper):
+            wide = 2 * (band.upper - band.lower) * per_speed
+            bounds = (max(peak - wide, peak / 2), peak + wide)
+            peak = float(minimize_scalar(lambda v: -growth(v), bounds=bounds, method="bounded").x)
         if growth(peak) <= level:
             continue
         borders = []
@@ -325,7 +342,7 @@ def _bands_near(
             if frozen in (0.0, math.inf):
                 borders.append(frozen)
                 continue
-            step = frozen * per_speed - peak
+            step = (frozen - band.peak) * per_speed
             inside, outside = peak, peak + step * 1.02
             for _ in range(12):
                 if outside <= 0 or growth(outside) <= level:
@@ -339,7 +356,8 @@ def _bands_near(
                 borders.append(0.0)
                 continue
             borders.append(float(brentq(lambda v: growth(v) - level, inside, outside, xtol=1e-9 * crossing)))
-        yield SpeedBand(borders[0], borders[1], crossing, band)
+        centre = band.centre * per_speed
+        yield abs(centre - crossing) <= 1e-9 * crossing, SpeedBand(borders[0], borders[1], centre, band)
 
 
 def _expanded(system: PeriodicSystem | ModalExpansion, order: int) -> ModalExpansion:
