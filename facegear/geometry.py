@@ -20,6 +20,8 @@ from facegear.symbolic import meshing
 ADDENDUM = 1.0  # pinion and face gear, in modules
 SHAPER_ADDENDUM = 1.25
 DEDENDUM = 1.25
+# With fewer, contact lines run through the cusp of the involute on the base circle.
+FEWEST_TEETH = 10
 
 _RIGHT_ANGLE = 0.5 * math.pi
 
@@ -35,7 +37,7 @@ class Drive:
     Parameters
     ----------
     pinion_teeth : int
-        N1 = Ns, number of teeth of pinion and shaper.
+        N1 = Ns, number of teeth of pinion and shaper, at least 10.
     gear_teeth : int
         N2 > N1, number of teeth of the face gear.
     module : float
@@ -61,8 +63,8 @@ class Drive:
     shaft_angle: float = math.radians(90.0)
 
     def __post_init__(self) -> None:
-        parameters.integer_at_least("pinion_teeth", self.pinion_teeth, 5)
-        parameters.integer_at_least("gear_teeth", self.gear_teeth, 6)
+        parameters.integer_at_least("pinion_teeth", self.pinion_teeth, FEWEST_TEETH)
+        parameters.integer_at_least("gear_teeth", self.gear_teeth, FEWEST_TEETH + 1)
         if self.gear_teeth <= self.pinion_teeth:
             raise ValueError(
                 f"gear_teeth must exceed pinion_teeth={self.pinion_teeth}, got {self.gear_teeth!r}"

@@ -325,7 +325,7 @@ def test_tooth_is_pointed_at_the_outer_limit(drive):
 
 
 @each_drive
-def test_true_flanks_meet_close_inside_the_outer_limit(drive):
+def test_true_flanks_meet_close_to_the_outer_limit(drive):
     """The curved flanks meet at the tooth top where `top_thickness` says, not exactly at R2."""
     low, high = 0.5 * (drive.flank_start + drive.outer_radius), 1.02 * drive.outer_radius
     radius = brentq(drive.top_thickness, low, high, xtol=1e-15)
@@ -453,8 +453,8 @@ def test_lines_vanish_at_both_ends_of_the_sweep(drive):
         ((26.0, 130, 3e-3), TypeError, r"pinion_teeth must be an integer.*26\.0"),
         ((26, 130.5, 3e-3), TypeError, r"gear_teeth must be an integer.*130\.5"),
         ((True, 130, 3e-3), TypeError, "pinion_teeth"),
-        ((3, 130, 3e-3), ValueError, "pinion_teeth must be at least 5, got 3"),
-        ((-26, 130, 3e-3), ValueError, "pinion_teeth must be at least 5, got -26"),
+        ((3, 130, 3e-3), ValueError, "pinion_teeth must be at least 10, got 3"),
+        ((-26, 130, 3e-3), ValueError, "pinion_teeth must be at least 10, got -26"),
         ((10, 50, 3e-3), ValueError, r"pinion_teeth=10 is too few.*25°.*pointed"),
         ((26, 26, 3e-3), ValueError, "gear_teeth must exceed pinion_teeth=26, got 26"),
         ((26, 130, 3.175), ValueError, r"module must lie in .*3\.175 m.*1000.*0\.003175"),
@@ -471,6 +471,28 @@ def test_lines_vanish_at_both_ends_of_the_sweep(drive):
 def test_bad_drives_are_refused(arguments, error, message):
     with pytest.raises(error, match=message):
         Drive(*arguments)
+
+
+class Overcut(Drive):
+    """A drive whose undercutting is pushed out: no tooth numbers inside the valid ranges were found to do it."""
+
+    @property
+    def inner_limit(self):
+        return 1.01 * self.outer_limit
+
+
+def test_no_face_width_is_refused():
+    with pytest.raises(
+        ValueError, match=r"pinion_teeth=26, gear_teeth=130 leave no face width: undercutting"
+    ):
+        Overcut(26, 130, 3.175e-3)
+
+
+def test_outer_edge_out_of_reach_is_refused():
+    """With very many teeth the pinion's tip passes above the pointed tooth's top."""
+    drive = Drive(1720, 1809, 1e-3, math.radians(14.968), math.radians(60.0))
+    with pytest.raises(ValueError, match=r"outer_radius=.* is out of the pinion's reach"):
+        drive.contact_lines(0.0)
 
 
 def test_bad_arguments_of_arrays_are_refused():
