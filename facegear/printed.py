@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
@@ -188,6 +188,24 @@ def ledger(
     if faults:
         raise LedgerError("\n".join(faults))
     return rows
+
+
+def as_markdown(rows: Sequence[LedgerRow]) -> str:
+    """Rows as a Markdown table: where, what, printed, computed, status."""
+    lines = ["| where | quantity | printed | computed | status |", "|---|---|---|---|---|"]
+    for row in rows:
+        value, unit = row.printed, f" {row.printed.unit}" if row.printed.unit else ""
+        if isinstance(value.printed, bool):
+            shown = ["stated", {True: "holds", False: "does not hold", None: "-"}[row.computed]]  # type: ignore[index]
+        else:
+            # Two digits more than are printed, so that the reader sees the rounding.
+            digits = max(0, -int(Decimal(value.printed).as_tuple().exponent)) + 2
+            shown = [
+                value.printed + unit,
+                "-" if row.computed is None else f"{row.computed:.{digits}f}{unit}",
+            ]
+        lines.append(f"| {value.where} | {value.quantity} | {shown[0]} | {shown[1]} | {row.status} |")
+    return "\n".join(lines)
 
 
 def save_ledger(rows: tuple[LedgerRow, ...], path: str | Path) -> Path:

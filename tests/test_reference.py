@@ -20,22 +20,6 @@ def figure(offset=0.0):
     )
 
 
-@pytest.fixture
-def directories(tmp_path):
-    data, build = tmp_path / "data", tmp_path / "build"
-    reference.save(figure(), data / "reference" / "fig.nc")
-    (data / "anchors").mkdir()
-    write_anchor(data, 3.0)
-    return data, build
-
-
-def write_anchor(data, value, speed=2.0):
-    (data / "anchors" / "fig.yaml").write_text(
-        "route: by hand\nanchors:\n"
-        f"- {{variable: radius, at: {{speed: {speed}, pair: 1}}, value: {value}, atol: 1.0e-9}}\n"
-    )
-
-
 def test_round_trip_is_exact(tmp_path):
     stored = reference.load(reference.save(figure(), tmp_path / "fig.nc"))
     assert all(row.agrees and row.largest_absolute == 0.0 for row in reference.difference(figure(), stored))
@@ -123,43 +107,3 @@ def test_variable_without_tolerance_cannot_be_saved(tmp_path):
     with pytest.raises(ValueError, match="'radius' lacks the attribute"):
         reference.save(dataset, tmp_path / "fig.nc")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_check_figures_writes_arrays_and_reports(directories):
-    data, build = directories
-    (row,) = reference.check_figures({"fig": figure(2e-10)}, data, build)
-    assert row["anchors"] == 1
-    assert row["anchor deviation / tolerance"] == pytest.approx(0.2, rel=1e-6)
-    assert (build / "arrays" / "fig.nc").is_file()
-
-
-def test_anchor_that_disagrees_is_refused_though_the_reference_agrees(directories):
-    data, build = directories
-    write_anchor(data, 3.1)
-    with pytest.raises(reference.ReferenceCheckError, match=r"independent route gives 3\.1"):
-        reference.check_figures({"fig": figure()}, data, build)
-
-
-def test_anchor_off_the_grid_is_refused(directories):
-    data, build = directories
-    write_anchor(data, 3.0, speed=2.5)
-    with pytest.raises(reference.ReferenceCheckError, match=r"speed = 2\.5 is not on the grid"):
-        reference.check_figures({"fig": figure()}, data, build)
-
-
-@pytest.mark.parametrize(
-    "content", ["route: none\nanchors: []\n", "route: x\nanchor: []\n", "[1, 2", "route: x\nanchors: [{}]\n"]
-)
-def test_unusable_anchor_file_is_refused(directories, content):
-    data, build = directories
-    (data / "anchors" / "fig.yaml").write_text(content)
-    with pytest.raises(reference.ReferenceCheckError, match=r"fig\.yaml"):
-        reference.check_figures({"fig": figure()}, data, build)
-
-
-def test_all_arrays_are_written_before_the_first_failure(directories):
-    data, build = directories
-    with pytest.raises(reference.ReferenceCheckError) as caught:
-        reference.check_figures({"lost": figure(), "fig": figure(1.0)}, data, build)
-    assert len(str(caught.value).splitlines()) == 2
-    assert {path.name for path in (build / "arrays").iterdir()} == {"lost.nc", "fig.nc"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import matplotlib as mpl
@@ -61,9 +62,9 @@ def _draw_tooth(axes: Axes3D, tooth: xr.Dataset) -> None:
 
 
 def _draw_lines(axes: Axes3D, tooth: xr.Dataset) -> None:
-    count = tooth.sizes["rotation"]
+    count = tooth.sizes["fraction"]
     for k in range(count):
-        line = tooth["line"].isel(rotation=k).values * _MM
+        line = tooth["line"].isel(fraction=k).values * _MM
         axes.plot(line[:, 0], -line[:, 1], line[:, 2], color=_SWEEP(k / (count - 1)), linewidth=1.6)
 
 
@@ -74,7 +75,7 @@ def tooth_and_contact_lines(tooth: xr.Dataset) -> Figure:
     Parameters
     ----------
     tooth : xarray.Dataset
-        ``surface`` (flank, profile, along, axis) and ``line`` (rotation, point, axis) in the gear's frame [m].
+        ``surface`` (flank, along, across, axis) and ``line`` (fraction, point, axis) in the gear's frame [m].
     """
     figure = Figure(figsize=(WIDTH, 4.6))
     figure.subplots_adjust(left=0.0, right=0.93, bottom=0.02, top=1.05)
@@ -87,7 +88,7 @@ def tooth_and_contact_lines(tooth: xr.Dataset) -> Figure:
 
 def _sweep_bar(figure: Figure, axes: Any) -> None:
     scale = mpl.cm.ScalarMappable(mpl.colors.Normalize(0, 1), _SWEEP)
-    bar = figure.colorbar(scale, ax=axes, shrink=0.55, pad=0.04, ticks=[0, 1])
+    bar = figure.colorbar(scale, ax=axes, shrink=0.5, pad=0.12, ticks=[0, 1])
     bar.ax.set_yticklabels(["first\ncontact", "last\ncontact"])
 
 
@@ -98,7 +99,7 @@ def contact_points(tooth: xr.Dataset) -> Figure:
     Parameters
     ----------
     tooth : xarray.Dataset
-        As for :func:`tooth_and_contact_lines`, with ``midpoint`` (rotation, axis) [m].
+        As for :func:`tooth_and_contact_lines`, with ``midpoint`` (fraction, axis) [m].
     """
     figure = Figure(figsize=(WIDTH, 7.0))
     grid = figure.add_gridspec(
@@ -113,12 +114,10 @@ def contact_points(tooth: xr.Dataset) -> Figure:
     )
     space.set_title("(a) in space", loc="left", y=0.9)
     side = figure.add_subplot(grid[1])
-    outline = tooth["surface"].isel(flank=0).values * _MM
-    for edge in (outline[:, 0], outline[:, -1], outline[0], outline[-1]):
-        side.plot(-edge[:, 1], edge[:, 2], color=GREY, linewidth=0.8)
-    count = tooth.sizes["rotation"]
+    _side_outline(side, tooth)
+    count = tooth.sizes["fraction"]
     for k in range(count):
-        line = tooth["line"].isel(rotation=k).values * _MM
+        line = tooth["line"].isel(fraction=k).values * _MM
         side.plot(-line[:, 1], line[:, 2], color=_SWEEP(k / (count - 1)))
     side.plot(
         -midpoints[:, 1], midpoints[:, 2], "x", color=VERMILION, markersize=5, label="contact point", zorder=5
@@ -127,6 +126,33 @@ def contact_points(tooth: xr.Dataset) -> Figure:
     side.set_title("(b) from the side", loc="left")
     side.legend(loc="lower right")
     return figure
+
+
+@styled
+def contact_line(step: xr.Dataset, tooth: xr.Dataset) -> Figure:
+    """Tooth from the side with one contact line and its midpoint.
+
+    Parameters
+    ----------
+    step : xarray.Dataset
+        ``line`` and ``midpoint`` of a single ``fraction``.
+    tooth : xarray.Dataset
+        The whole tooth, for its outline.
+    """
+    figure, (axes,) = panels(1, 1, 2.9)
+    _side_outline(axes, tooth)
+    line, midpoint = step["line"].values[0] * _MM, step["midpoint"].values[0] * _MM
+    axes.plot(-line[:, 1], line[:, 2], color=BLUE, linewidth=2.6)
+    axes.plot(-midpoint[1], midpoint[2], "x", color=VERMILION, markersize=9, markeredgewidth=2)
+    axes.set_title(f"length {float(step['length'][0]) * _MM:.1f} mm", loc="left")
+    axes.set(xlabel="distance from the face gear's axis [mm]", ylabel="axial [mm]")
+    return figure
+
+
+def _side_outline(axes: Axes, tooth: xr.Dataset) -> None:
+    outline = tooth["surface"].isel(flank=0).values * _MM
+    for edge in (outline[:, 0], outline[:, -1], outline[0], outline[-1]):
+        axes.plot(-edge[:, 1], edge[:, 2], color=GREY, linewidth=0.8)
 
 
 def _plot_pair(axes: Axes, x: Any, y: Any, k: int, **options: Any) -> None:
@@ -141,13 +167,13 @@ def contact_point_positions(paths: xr.Dataset) -> Figure:
     Parameters
     ----------
     paths : xarray.Dataset
-        ``radius`` [m] and ``angle`` [rad] over (pair, fraction); NaN where a pair is not in mesh.
+        ``radius`` [m] and ``angle`` [rad] over (pair, time); NaN where a pair is not in mesh.
     """
     figure, axes = panels(2, 1, 5.4, sharex=True)
     for k in range(paths.sizes["pair"]):
         path = paths.isel(pair=k)
-        _plot_pair(axes[0], path.fraction, path.radius * _MM, k, label=f"pair {k + 1}")
-        _plot_pair(axes[1], path.fraction, np.degrees(path.angle), k)
+        _plot_pair(axes[0], path.time, path.radius * _MM, k, label=f"pair {k + 1}")
+        _plot_pair(axes[1], path.time, np.degrees(path.angle), k)
     axes[0].set_ylabel("radius $r_i$ [mm]")
     axes[1].set_ylabel(r"angle $\theta_i$ [degree]")
     axes[1].set_xlabel(r"rotation of the face gear over its angular pitch, $t/T_0$")
@@ -184,7 +210,7 @@ def contact_centroid_sketch(instants: xr.Dataset) -> Figure:
                 panel,
                 f"$l_{j + 1}$ = {float(pair.length) * _MM:.1f} mm",
                 (float(pair.point_across) * _MM, float(pair.point_radial) * _MM),
-                (14, 10),
+                (14, 10) if k == 0 else (16, -18),
             )
         panel.plot(
             float(shown.centroid_across) * _MM,
@@ -211,23 +237,23 @@ def contact_centroid_positions(motion: xr.Dataset) -> Figure:
     Parameters
     ----------
     motion : xarray.Dataset
-        ``radius`` [m], ``angle`` [rad] over (pair, fraction), NaN where not in mesh; ``centroid_radius``,
-        ``centroid_angle`` over fraction.
+        ``radius`` [m], ``angle`` [rad] over (pair, time), NaN where not in mesh; ``centroid_radius``,
+        ``centroid_angle`` over time.
     """
     figure, axes = panels(2, 1, 5.6, sharex=True)
     for k in range(motion.sizes["pair"]):
         pair = motion.isel(pair=k)
         label = "contact points" if k == 0 else None
-        axes[0].plot(pair.fraction, pair.radius * _MM, color=GREY, linestyle=(0, (5, 2)), label=label)
-        axes[1].plot(pair.fraction, np.degrees(pair.angle), color=GREY, linestyle=(0, (5, 2)))
+        axes[0].plot(pair.time, pair.radius * _MM, color=GREY, linestyle=(0, (5, 2)), label=label)
+        axes[1].plot(pair.time, np.degrees(pair.angle), color=GREY, linestyle=(0, (5, 2)))
     axes[0].plot(
-        motion.fraction,
+        motion.time,
         motion.centroid_radius * _MM,
         color=VERMILION,
         linewidth=2.2,
         label="contact centroid",
     )
-    axes[1].plot(motion.fraction, np.degrees(motion.centroid_angle), color=VERMILION, linewidth=2.2)
+    axes[1].plot(motion.time, np.degrees(motion.centroid_angle), color=VERMILION, linewidth=2.2)
     axes[0].set_ylabel("radius [mm]")
     axes[1].set_ylabel("angle [degree]")
     axes[1].set_xlabel("$t/T_0$")
@@ -244,54 +270,57 @@ def skew_lines(lines: xr.Dataset) -> Figure:
     Parameters
     ----------
     lines : xarray.Dataset
-        ``radius`` and ``skew_radius`` [m] over (pair, fraction), NaN where not in mesh.
+        ``radius`` and ``skew_radius`` [m] over (pair, time), NaN where not in mesh.
     """
     figure, (axes,) = panels(1, 1, 3.6)
     for k in range(lines.sizes["pair"]):
         pair = lines.isel(pair=k)
         axes.plot(
-            pair.fraction,
+            pair.time,
             pair.radius * _MM,
             color=GREY,
             linestyle=(0, (5, 2)),
             label="contact points" if k == 0 else None,
         )
-        _plot_pair(axes, pair.fraction, pair.skew_radius * _MM, k, label=f"skew line, pair {k + 1}")
+        _plot_pair(axes, pair.time, pair.skew_radius * _MM, k, label=f"skew line, pair {k + 1}")
     axes.set(xlabel="$t/T_0$", ylabel="radius [mm]")
     axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0), columnspacing=1.2, handlelength=1.6)
     return figure
 
 
 @styled
-def contact_ratio_after_tregold(ratios: xr.Dataset) -> Figure:
+def contact_ratio_after_tregold(ratios: xr.Dataset, marked: Sequence[int]) -> Figure:
     """Figure 4.3: contact ratio after Tregold against the number of pinion teeth.
 
     Parameters
     ----------
     ratios : xarray.Dataset
-        ``contact_ratio`` over ``pinion_teeth``; attribute ``marked``: tooth numbers to mark.
+        ``contact_ratio`` over ``pinion_teeth``.
+    marked : sequence of int
+        Tooth numbers to mark.
     """
     figure, (axes,) = panels(1, 1, 3.6)
     axes.plot(ratios.pinion_teeth, ratios.contact_ratio, "o-", markersize=4)
-    marked = ratios.sel(pinion_teeth=list(ratios.attrs["marked"]))
+    chosen = ratios.sel(pinion_teeth=list(marked))
     axes.plot(
-        marked.pinion_teeth, marked.contact_ratio, "o", color=VERMILION, markersize=8, markerfacecolor="none"
+        chosen.pinion_teeth, chosen.contact_ratio, "o", color=VERMILION, markersize=8, markerfacecolor="none"
     )
-    for teeth, ratio in zip(marked.pinion_teeth.values, marked.contact_ratio.values, strict=True):
+    for teeth, ratio in zip(chosen.pinion_teeth.values, chosen.contact_ratio.values, strict=True):
         label_line(axes, f"{ratio:.4f}", (teeth, ratio), (6, -22))
     axes.set(xlabel="number of pinion teeth $N_1$", ylabel="contact ratio $c_r$")
     return figure
 
 
 @styled
-def contact_ratios_compared(ratios: xr.Dataset) -> Figure:
+def contact_ratios_compared(ratios: xr.Dataset, tregold: xr.Dataset, geometric: xr.Dataset) -> Figure:
     """Tregold's contact ratio beside that of the true sweep, and the pairs in mesh that each implies.
 
     Parameters
     ----------
     ratios : xarray.Dataset
-        ``contact_ratio``, ``geometric_contact_ratio`` over ``pinion_teeth``; ``total_length`` [m] and
-        ``total_length_geometric`` [m] over ``fraction``.
+        ``contact_ratio``, ``geometric_contact_ratio`` over ``pinion_teeth``.
+    tregold, geometric : xarray.Dataset
+        ``total_length`` [m] over ``time``, with either contact ratio.
     """
     figure, axes = panels(1, 2, 3.8)
     axes[0].plot(ratios.pinion_teeth, ratios.geometric_contact_ratio, "s-", color=VERMILION, markersize=4)
@@ -301,8 +330,8 @@ def contact_ratios_compared(ratios: xr.Dataset) -> Figure:
     )
     axes[0].annotate("Tregold", (0.5, 0.16), xycoords="axes fraction", color=BLUE, ha="center")
     axes[0].set(xlabel="number of pinion teeth $N_1$", ylabel="contact ratio", ylim=(1.0, None))
-    axes[1].plot(ratios.fraction, ratios.total_length_geometric * _MM, color=VERMILION)
-    axes[1].plot(ratios.fraction, ratios.total_length * _MM, color=BLUE)
+    axes[1].plot(geometric.time, geometric.total_length * _MM, color=VERMILION)
+    axes[1].plot(tregold.time, tregold.total_length * _MM, color=BLUE)
     axes[1].set(xlabel="$t/T_0$", ylabel="total length of contact lines [mm]", ylim=(0, None))
     for panel, letter in zip(axes, "ab", strict=True):
         panel.set_title(f"({letter})", loc="left")
@@ -316,12 +345,12 @@ def undercut_condition(condition: xr.Dataset) -> Figure:
     Parameters
     ----------
     condition : xarray.Dataset
-        ``value`` [-] over ``tangent``; attribute ``roots``: the real roots, the last one physical.
+        ``value`` [-] over ``tangent``; ``roots``, ascending, the last one physical.
     """
     figure, (axes,) = panels(1, 1, 3.4)
     axes.axhline(0, color=INK, linewidth=0.8)
     axes.plot(condition.tangent, condition.value)
-    *others, physical = condition.attrs["roots"]
+    *others, physical = condition["roots"].values
     for root in others:
         axes.plot(root, 0, "o", color=GREY, markersize=8, markerfacecolor="white", zorder=5)
         label_line(axes, f"$t$ = {root:.4f}\non the far branch", (root, 0), (10, 26))
@@ -364,23 +393,30 @@ def limits_against_shaft_angle(limits: xr.Dataset) -> Figure:
 
 
 @styled
-def pointing(sections: xr.Dataset) -> Figure:
-    """Tooth sections normal to the pinion's axis, from the inner to the outer end, where the flanks meet.
+def top_land(land: xr.Dataset) -> Figure:
+    """Thickness of the tooth at its top along the face, and its last millimetre enlarged.
 
     Parameters
     ----------
-    sections : xarray.Dataset
-        ``across``, ``height`` [m] over (position, flank, profile); coordinate ``position`` [m].
+    land : xarray.Dataset
+        ``thickness`` [m] over ``distance`` [m], and ``pointed_distance`` [m].
     """
-    figure, axes = panels(1, sections.sizes["position"], 3.2, sharey=True)
-    for k, panel in enumerate(axes):
-        section = sections.isel(position=k)
-        left, right = (section.isel(flank=f) for f in (0, 1))
-        across = np.concatenate([left.across, right.across[::-1]]) * _MM
-        height = np.concatenate([left.height, right.height[::-1]]) * _MM
-        panel.fill(across, height, color="#B8C4CE", edgecolor=INK, linewidth=1.0)
-        panel.set_title(f"$u$ = {float(section.position) * _MM:.1f} mm", loc="left")
-        panel.set_xlabel("across [mm]")
-        panel.set_aspect("equal")
-    axes[0].set_ylabel("axial [mm]")
+    figure, axes = panels(1, 2, 3.4)
+    outer, pointed = float(land.distance[-1]) * _MM, float(land.pointed_distance) * _MM
+    for panel in axes:
+        panel.axhline(0, color=INK, linewidth=0.8)
+        panel.set_xlabel("distance from the gear's axis [mm]")
+    axes[0].plot(land.distance * _MM, land.thickness * _MM)
+    axes[0].set_ylabel("top land [mm]")
+    axes[0].set_title("(a) whole face", loc="left")
+    last = land.sel(distance=slice((outer - 1.0) / _MM, None))
+    axes[1].plot(last.distance * _MM, last.thickness * 1e6)
+    axes[1].plot(pointed, 0, "o", color=VERMILION)
+    axes[1].axvline(outer, color=GREY, linewidth=0.8, linestyle=(0, (4, 3)))
+    label_line(axes[1], f"true flanks meet\n{pointed:.3f} mm", (pointed, 0), (-96, -30))
+    axes[1].annotate(
+        f"$R_2$ = {outer:.3f} mm ", (outer, 0.93), xycoords=("data", "axes fraction"), ha="right"
+    )
+    axes[1].set_ylabel("top land [µm]")
+    axes[1].set_title("(b) outer end", loc="left")
     return figure

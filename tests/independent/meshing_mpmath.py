@@ -7,7 +7,24 @@ The undercutting limit is where the generated surface becomes singular, the poin
 
 from functools import lru_cache
 
-from mpmath import acos, acot, atan2, cos, cot, findroot, hypot, matrix, mp, mpf, pi, quad, sin, sqrt, tan
+from mpmath import (
+    acos,
+    acot,
+    atan,
+    atan2,
+    cos,
+    cot,
+    findroot,
+    hypot,
+    matrix,
+    mp,
+    mpf,
+    pi,
+    quad,
+    sin,
+    sqrt,
+    tan,
+)
 
 mp.dps = 30
 
@@ -92,45 +109,52 @@ def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@lru_cache
-def inner_limit(drive):
-    """L1 (3-13): where the surface that the shaper's tip generates becomes singular (3-8)."""
+def tip_area(drive, rotation):
+    """Signed area element of the surface that the shaper's tip circle generates; zero where it is singular (3-8)."""
     roll = drive.shaper_tip_roll
 
-    def area(rotation):
-        def surface(r, angle):
-            return drive.to_gear(angle, drive.shaper_point(r, drive.u_of_contact(r, angle)))
+    def surface(r, angle):
+        return drive.to_gear(angle, drive.shaper_point(r, drive.u_of_contact(r, angle)))
 
-        along = derivative(lambda r: surface(r, rotation), roll)
-        across = derivative(lambda angle: surface(roll, angle), rotation)
-        normal = drive.to_gear(
-            rotation, matrix([cos(drive.half_space + roll), sin(drive.half_space + roll), 0])
-        )
-        return dot(cross(along, across), normal)
+    along = derivative(lambda r: surface(r, rotation), roll)
+    across = derivative(lambda angle: surface(roll, angle), rotation)
+    normal = drive.to_gear(rotation, matrix([cos(drive.half_space + roll), sin(drive.half_space + roll), 0]))
+    return dot(cross(along, across), normal)
 
-    # The tip enters with a local pressure angle rotation + half_space + roll between 0 and a right angle.
-    start, stop = -drive.half_space - roll, RIGHT_ANGLE - drive.half_space - roll
-    angles = [start + (stop - start) * (k + mpf("0.5")) / 60 for k in range(60)]
-    values = [area(angle) for angle in angles]
-    brackets = [
-        (a, b) for a, b, fa, fb in zip(angles, angles[1:], values, values[1:], strict=False) if fa * fb < 0
-    ]
-    (bracket,) = brackets
-    rotation = findroot(area, bracket, solver="anderson", tol=1e-20)
+
+def singular_tangents(drive):
+    """Tangents of the local pressure angle at which the tip generates a singular point, ascending."""
+    offset = drive.half_space + drive.shaper_tip_roll
+    steps = 120
+    angles = [RIGHT_ANGLE * (2 * (k + mpf("0.5")) / steps - 1) for k in range(steps)]
+    values = [tip_area(drive, angle - offset) for angle in angles]
+    found = []
+    for a, b, fa, fb in zip(angles, angles[1:], values, values[1:], strict=False):
+        if fa * fb < 0:
+            angle = findroot(lambda q: tip_area(drive, q - offset), (a, b), solver="anderson", tol=1e-20)
+            found.append(tan(angle))
+    return found
+
+
+@lru_cache
+def inner_limit(drive):
+    """L1 (3-13): where the surface that the shaper's tip generates becomes singular for positive pressure angles."""
+    roll = drive.shaper_tip_roll
+    (tangent,) = [t for t in singular_tangents(drive) if t > 0]
+    rotation = atan(tangent) - drive.half_space - roll
     return drive.u_of_contact(roll, rotation) - drive.root_radius * cot(drive.shaft_angle)
 
 
 @lru_cache
-def outer_limit_exact(drive):
-    """Distance from the gear's axis at which both flanks meet in the plane of the tooth tops, shaft angle 90° only."""
+def pointed_point(drive):
+    """Roll angle and rotation at which both flanks meet in the plane of the tooth tops, shaft angle 90° only."""
 
     def meet(roll, rotation):
         point = drive.to_gear(rotation, drive.shaper_point(roll, drive.u_of_contact(roll, rotation)))
         return point[0] / drive.module, (point[2] + drive.tooth_top) / drive.module
 
     roll, rotation = findroot(meet, (drive.tip_roll * mpf("0.6"), mpf("0.1")), tol=1e-18)
-    point = drive.to_gear(rotation, drive.shaper_point(roll, drive.u_of_contact(roll, rotation)))
-    return hypot(point[0], point[1])
+    return roll, rotation
 
 
 @lru_cache
@@ -151,15 +175,19 @@ def outer_limit(drive):
 
 
 def tregold_contact_ratio(drive):
-    """Length of the path of contact of the formative spur gears over the base pitch (3-23 to 3-26)."""
+    """Length of the path of contact of the formative spur gears over the base pitch (3-23 to 3-26).
+
+    A pitch cone of more than a right angle unrolls into an internal gear: its tooth number is negative.
+    """
     ratio, shaft = 1 / drive.ratio, drive.shaft_angle
-    cones = acot((ratio + cos(shaft)) / sin(shaft)), acot((1 + ratio * cos(shaft)) / (ratio * sin(shaft)))
+    cones = atan2(sin(shaft), ratio + cos(shaft)), atan2(ratio * sin(shaft), 1 + ratio * cos(shaft))
     teeth = [z / cos(cone) for z, cone in zip((drive.pinion_teeth, drive.gear_teeth), cones, strict=True)]
     cos_pressure = drive.base_radius / drive.pitch_radius
     path = mpf(0)
     for z in teeth:
-        pitch, base = z * drive.module / 2, z * drive.module / 2 * cos_pressure
-        path += sqrt((pitch + drive.module) ** 2 - base**2) - sqrt(pitch**2 - base**2)
+        pitch, side = z * drive.module / 2, 1 if z > 0 else -1
+        base = pitch * cos_pressure
+        path += side * (sqrt((pitch + drive.module) ** 2 - base**2) - sqrt(pitch**2 - base**2))
     return path / (pi * drive.module * cos_pressure)
 
 

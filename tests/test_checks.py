@@ -1,0 +1,62 @@
+"""References and anchors together: nothing is accepted that lacks either or disagrees with either."""
+
+import pytest
+
+from facegear import checks, reference
+from tests.test_reference import figure
+
+
+@pytest.fixture
+def directories(tmp_path):
+    data, build = tmp_path / "data", tmp_path / "build"
+    reference.save(figure(), data / "reference" / "fig.nc")
+    (data / "anchors").mkdir()
+    write_anchor(data, 3.0)
+    return data, build
+
+
+def write_anchor(data, value, speed=2.0):
+    (data / "anchors" / "fig.yaml").write_text(
+        "route: by hand\nanchors:\n"
+        f"- {{variable: radius, at: {{speed: {speed}, pair: 1}}, value: {value}, atol: 1.0e-9}}\n"
+    )
+
+
+def test_check_figures_writes_arrays_and_reports(directories):
+    data, build = directories
+    (row,) = checks.check_figures({"fig": figure(2e-10)}, data, build)
+    assert row["anchors"] == 1
+    assert row["anchor deviation / tolerance"] == pytest.approx(0.2, rel=1e-6)
+    assert (build / "arrays" / "fig.nc").is_file()
+
+
+def test_anchor_that_disagrees_is_refused_though_the_reference_agrees(directories):
+    data, build = directories
+    write_anchor(data, 3.1)
+    with pytest.raises(reference.ReferenceCheckError, match=r"independent route gives 3\.1"):
+        checks.check_figures({"fig": figure()}, data, build)
+
+
+def test_anchor_off_the_grid_is_refused(directories):
+    data, build = directories
+    write_anchor(data, 3.0, speed=2.5)
+    with pytest.raises(reference.ReferenceCheckError, match=r"speed = 2\.5 is not on the grid"):
+        checks.check_figures({"fig": figure()}, data, build)
+
+
+@pytest.mark.parametrize(
+    "content", ["route: none\nanchors: []\n", "route: x\nanchor: []\n", "[1, 2", "route: x\nanchors: [{}]\n"]
+)
+def test_unusable_anchor_file_is_refused(directories, content):
+    data, build = directories
+    (data / "anchors" / "fig.yaml").write_text(content)
+    with pytest.raises(reference.ReferenceCheckError, match=r"fig\.yaml"):
+        checks.check_figures({"fig": figure()}, data, build)
+
+
+def test_all_arrays_are_written_before_the_first_failure(directories):
+    data, build = directories
+    with pytest.raises(reference.ReferenceCheckError) as caught:
+        checks.check_figures({"lost": figure(), "fig": figure(1.0)}, data, build)
+    assert len(str(caught.value).splitlines()) == 2
+    assert {path.name for path in (build / "arrays").iterdir()} == {"lost.nc", "fig.nc"}
