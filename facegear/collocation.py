@@ -31,9 +31,9 @@ ComplexArray = NDArray[np.complex128]
 #: Gauss nodes a panel.
 DEFAULT_NODES = 16
 #: Largest product of fastest frequency and panel length [rad].
-DEFAULT_PANEL_ANGLE = 10.0
+DEFAULT_PANEL_ANGLE = 9.0
 #: Interpolation error of a shape vector allowed on a panel, relative to its largest component.
-SHAPE_TOLERANCE = 1e-6
+SHAPE_TOLERANCE = 1e-8
 
 # Panels on one smooth piece beyond which a shape vector is refused.
 _MOST_PANELS = 128

@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.parameters import nonnegative, positive
 from facegear.piecewise import (
     Array,
     FourierSeries,
@@ -66,9 +67,7 @@ class ContactLoad:
             raise TypeError(f"shape must be a PiecewiseChebyshev; got {type(self.shape).__name__}")
         for name in ("stiffness", "damping", "mass"):
             value = getattr(self, name)
-            object.__setattr__(self, name, _number(value, name))
-            if getattr(self, name) < 0.0:
-                raise ValueError(f"{name} must be a finite number >= 0; got {value!r}")
+            object.__setattr__(self, name, nonnegative(name, value))
         if self.rate not in ("frozen", "total"):
             raise ValueError(f'rate must be "frozen" or "total"; got {self.rate!r}')
         if self.weight is not None and self.weight.components != 1:
@@ -153,9 +152,7 @@ class PeriodicSystem:
                     f"loads[{number}].shape must have {size} components, one a coordinate; "
                     f"got {load.shape.components}"
                 )
-        object.__setattr__(self, "period", _number(self.period, "period"))
-        if self.period <= 0.0:
-            raise ValueError(f"period must be a finite number > 0 (seconds); got {self.period!r}")
+        object.__setattr__(self, "period", positive("period", self.period, "s"))
 
     @property
     def size(self) -> int:
@@ -315,12 +312,3 @@ class PeriodicSystem:
             for load in self.loads
         )
         return replace(self, loads=loads)
-
-
-def _number(value: float, name: str) -> float:
-    """Return a finite real number as a float."""
-    if isinstance(value, bool) or np.ndim(value) != 0 or not isinstance(value, (int, float, np.number)):
-        raise TypeError(f"{name} must be a real number; got {value!r}")
-    if np.iscomplexobj(value) or not np.isfinite(value):
-        raise ValueError(f"{name} must be finite and real; got {value!r}")
-    return float(value)

@@ -16,6 +16,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
+from facegear.parameters import finite_array, integer_at_least
+
 Array = NDArray[np.float64]
 Side = Literal["left", "right"]
 
@@ -299,11 +301,10 @@ def fourier_series(
     ValueError
         If `order` is not a whole number >= 1, or the quadrature does not settle with 600 nodes a piece.
     """
-    if isinstance(order, bool) or int(order) != order or order < 1:
-        raise ValueError(f"order must be a whole number >= 1; got {order!r}")
+    order = integer_at_least("order", order, 1)
     edges = merge_breakpoints([real_array(breakpoints, "breakpoints", 1)])
     ends = np.append(edges[1:], edges[0] + 1.0)
-    harmonics = np.arange(int(order) + 1)
+    harmonics = np.arange(order + 1)
 
     def integrate(nodes: int) -> NDArray[np.complex128]:
         x, w = np.polynomial.legendre.leggauss(nodes)
@@ -346,15 +347,8 @@ def _check_breakpoints(breakpoints: Array) -> None:
 
 def real_array(values: ArrayLike, name: str, dimensions: int) -> Array:
     """Return a read-only float copy, checked for its number of dimensions and for finite entries."""
-    if np.iscomplexobj(values):
-        raise TypeError(f"{name} must be real; got complex numbers")
-    try:
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be an array of real numbers; got {values!r}") from None
+    array = finite_array(name, values)
     if array.ndim != dimensions:
         raise ValueError(f"{name} must have {dimensions} dimensions; got shape {array.shape}")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} must be finite; got a NaN or infinite entry")
     array.setflags(write=False)
     return array

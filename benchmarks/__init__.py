@@ -1,0 +1,1 @@
+"""Timings of facegear against the dissertation's rule and general-purpose integrators."""
