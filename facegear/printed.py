@@ -208,6 +208,25 @@ def as_markdown(rows: Sequence[LedgerRow]) -> str:
     return "\n".join(lines)
 
 
+def counts_as_markdown(chapters: Mapping[str, Sequence[LedgerRow]]) -> str:
+    """How many rows of each chapter have each status, as a Markdown table; keys are file names like ``ch03``."""
+    lines = [f"| chapter | {' | '.join(STATUSES)} | all |", "|---" * (len(STATUSES) + 2) + "|"]
+    for name, rows in chapters.items():
+        counts = [sum(row.status == status for row in rows) for status in STATUSES]
+        lines.append(f"| {int(name[2:])} | {' | '.join(map(str, counts))} | {len(rows)} |")
+    return "\n".join(lines)
+
+
+def remarks_as_markdown(rows: Sequence[LedgerRow]) -> str:
+    """Where, what, status, and the sentence that explains it, as a Markdown table."""
+    lines = ["| where | quantity | status | why |", "|---|---|---|---|"]
+    for row in rows:
+        value = row.printed
+        why = f"{value.remark} {value.convention}".strip()
+        lines.append(f"| {value.where} | {value.quantity} | {row.status} | {why} |")
+    return "\n".join(lines)
+
+
 def save_ledger(rows: tuple[LedgerRow, ...], path: str | Path) -> Path:
     """Write the rows of one chapter as YAML for the ledger page; the file appears whole or not at all."""
     path = Path(path)

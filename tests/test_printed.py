@@ -128,3 +128,29 @@ def test_saved_ledger_is_verified_again_when_read(tmp_path):
 )
 def test_the_files_of_the_repository_are_well_formed(path):
     assert printed.load_printed(path)
+
+
+def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
+    entries = [
+        ENTRY,
+        ENTRY | {"id": "b", "printed": "282", "status": printed.DIFFERS},
+        ENTRY
+        | {
+            "id": "c",
+            "printed": True,
+            "unit": "",
+            "convention": "as chosen",
+            "status": printed.REPRODUCED_UNDER_CONVENTION,
+        },
+        ENTRY | {"id": "d", "status": printed.UNDECIDED},
+    ]
+    values = {ENTRY["id"]: 231.93881, "b": 283.04, "c": True, "d": None}
+    rows = printed.ledger(printed.load_printed(write(tmp_path, *entries)), values)
+    table = printed.as_markdown(rows).splitlines()
+    assert len(table) == 2 + len(rows)
+    assert "| 231.94 mm | 231.9388 mm | reproduced |" in table[2]
+    assert "| 282 mm | 283.04 mm | differs |" in table[3]
+    assert "| stated | holds |" in table[4]
+    assert "| 231.94 mm | - |" in table[5]
+    assert printed.counts_as_markdown({"ch03": rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 |"
+    assert "To every digit. as chosen |" in printed.remarks_as_markdown(rows)
