@@ -31,7 +31,7 @@ Interval = tuple[float, float, float]
 # room above the latter for the phase of their products to be known.
 _ROUNDING = 1e-11
 _LEAST_COUPLING = 1e-10
-# An eigenvalue joins a block if its detuning is at most this many times its coupling to it: leaving it out
+# An eigenvalue joins a block if its detuning is less than this many times its coupling to it: leaving it out
 # then changes growth rates by about 1/REACH² of the coupling, taking it in needlessly by terms of second
 # order.
 REACH = 10.0
@@ -111,7 +111,9 @@ def coupled(expansion: ModalExpansion, a: int, b: int, s: int) -> bool:
     return bool(strength > _LEAST_COUPLING * expansion.frequencies[-1])
 
 
-def congruent_block(expansion: ModalExpansion, a: int, b: int, s: int, frequency: float) -> ResonanceBlock:
+def congruent_block(
+    expansion: ModalExpansion, a: int, b: int, s: int, frequency: float, reach: float
+) -> ResonanceBlock:
     """Collect the pair and every eigenvalue congruent to it within its reach, until no more join."""
     members, shifts = [a, b], [s, 0]
     signed, order = expansion.signed_frequencies, expansion.order
@@ -122,7 +124,7 @@ def congruent_block(expansion: ModalExpansion, a: int, b: int, s: int, frequency
     while joined:
         joined = False
         for c in list(candidates):
-            reach = max(
+            strength = max(
                 (
                     expansion.strength[order + turns[c] - n, c, m]
                     for m, n in zip(members, shifts, strict=True)
@@ -130,7 +132,7 @@ def congruent_block(expansion: ModalExpansion, a: int, b: int, s: int, frequency
                 ),
                 default=0.0,
             )
-            if reach > _LEAST_COUPLING * expansion.frequencies[-1] and detuning[c] <= REACH * reach:
+            if strength > _LEAST_COUPLING * expansion.frequencies[-1] and detuning[c] < reach * strength:
                 members.append(c)
                 shifts.append(int(turns[c]))
                 candidates.remove(c)
@@ -150,19 +152,27 @@ def signature(block: ResonanceBlock) -> tuple[tuple[int, int], ...]:
     return min(normal(own), normal(conjugate))
 
 
-def driving_pair(block: ResonanceBlock, frequency: float) -> tuple[int, int]:
-    """Positions of the two members whose periodic coupling feeds the critical eigenvector most."""
+def driving_pair(block: ResonanceBlock, interval: Interval) -> tuple[int, int]:
+    """Positions of the two members after which an unstable interval is named.
+
+    Of the pairs whose combination lies inside the interval, or of all if none does, the one whose coupling
+    feeds the critical eigenvector at the peak most.
+    """
     if len(block.members) == 2:
         return 0, 1
-    matrix = block.matrix(frequency)
+    lower, upper, peak = interval
+    matrix = block.matrix(peak)
     values, right = np.linalg.eig(matrix)
     critical = int(np.argmax(values.real))
     left = np.linalg.inv(right)[critical]
     # With the left vector normalised, these shares add up to the eigenvalue.
     share = (left[:, None] * matrix * right[None, :, critical]).real
     share = share + share.T
-    shifts = np.array(block.shifts)
-    share[shifts[:, None] == shifts[None, :]] = -np.inf
+    turns = np.subtract.outer(block.shifts, block.shifts)
+    apart = np.subtract.outer(block.signed_frequencies, block.signed_frequencies)
+    paired = turns > 0
+    inside = paired & (apart > lower * turns) & (apart < upper * turns)
+    share[~(inside if inside.any() else paired)] = -np.inf
     a, b = np.unravel_index(int(np.argmax(share)), share.shape)
     return int(a), int(b)
 

@@ -116,11 +116,13 @@ class SpeedBand:
 
     @property
     def label(self) -> str:
-        """Combination and order, such as "(1+2)/1"."""
+        """Label of the band."""
         return self.band.label
 
 
-def resonance_bands(system: PeriodicSystem | ModalExpansion, *, order: int = 6) -> tuple[ResonanceBand, ...]:
+def resonance_bands(
+    system: PeriodicSystem | ModalExpansion, *, order: int = 6, reach: float = REACH
+) -> tuple[ResonanceBand, ...]:
     """Bands of the parametric frequency in which a system is unstable to first order.
 
     Parameters
@@ -130,6 +132,10 @@ def resonance_bands(system: PeriodicSystem | ModalExpansion, *, order: int = 6) 
         give ``standard_form(system, order).expansion()``.
     order : int
         Highest s.
+    reach : float
+        Further eigenvalues join a pair whose detuning is less than ``reach`` times their coupling to it. With 0
+        each pair stands alone, as in 2-26 to 2-28; multiple natural frequencies are then not taken together, and
+        resonances that are driven by way of a third eigenvalue are missed.
 
     Returns
     -------
@@ -150,11 +156,12 @@ def resonance_bands(system: PeriodicSystem | ModalExpansion, *, order: int = 6) 
     is not averaged.
     """
     expansion = _expanded(system, order)
+    _check_reach(reach)
     _refuse_unstable_mean(expansion)
     bands: list[ResonanceBand] = []
     seen: set[tuple[tuple[int, int], ...]] = set()
     for a, b, s, centre in _combinations(expansion, order):
-        block = congruent_block(expansion, a, b, s, centre)
+        block = congruent_block(expansion, a, b, s, centre, reach)
         key = signature(block)
         if key not in seen:
             seen.add(key)
@@ -164,7 +171,9 @@ def resonance_bands(system: PeriodicSystem | ModalExpansion, *, order: int = 6) 
     return tuple(sorted(_without_repeats(bands), key=lambda band: (band.centre, band.label)))
 
 
-def growth_rate_at(system: PeriodicSystem | ModalExpansion, *, order: int | None = None) -> float:
+def growth_rate_at(
+    system: PeriodicSystem | ModalExpansion, *, order: int | None = None, reach: float = REACH
+) -> float:
     """Largest first-order growth rate over all pairs and orders at the system's own period.
 
     Parameters
@@ -173,6 +182,8 @@ def growth_rate_at(system: PeriodicSystem | ModalExpansion, *, order: int | None
         As for :func:`resonance_bands`.
     order : int, optional
         Highest s; by default the highest that can be resonant, 2 ω_max/ω, or all of an expansion.
+    reach : float
+        As for :func:`resonance_bands`.
 
     Returns
     -------
@@ -186,6 +197,7 @@ def growth_rate_at(system: PeriodicSystem | ModalExpansion, *, order: int | None
             mean = modal_expansion(system, 1)
             order = max(1, round(2 * float(mean.frequencies[-1]) / mean.parametric_frequency))
     expansion = _expanded(system, order)
+    _check_reach(reach)
     frequency = expansion.parametric_frequency
     signed = expansion.signed_frequencies
     best = expansion.mean_growth_rate
@@ -195,7 +207,7 @@ def growth_rate_at(system: PeriodicSystem | ModalExpansion, *, order: int | None
             s = round((signed[a] - signed[b]) / frequency)
             if not 0 < abs(s) <= order or not coupled(expansion, a, b, s):
                 continue
-            block = congruent_block(expansion, a, b, s, frequency)
+            block = congruent_block(expansion, a, b, s, frequency, reach)
             key = signature(block)
             if key not in seen:
                 seen.add(key)
@@ -208,6 +220,7 @@ def band_speeds(
     speeds: tuple[float, float],
     *,
     order: int = 6,
+    reach: float = REACH,
     points: int = 41,
     expand: Callable[[PeriodicSystem, int], ModalExpansion] = modal_expansion,
 ) -> tuple[SpeedBand, ...]:
@@ -222,6 +235,8 @@ def band_speeds(
         outside.
     order : int
         Highest s.
+    reach : float
+        As for :func:`resonance_bands`.
     points : int
         Speeds at which combinations are first compared with sω, at least 2. A combination is missed only if it
         crosses sω twice between two of them.
@@ -241,6 +256,7 @@ def band_speeds(
         system is unstable at a crossing.
     """
     check_order(order)
+    _check_reach(reach)
     low, high = speeds
     if not (math.isfinite(low) and math.isfinite(high) and 0 < low < high):
         raise ValueError(f"speeds = {speeds!r}: valid is a positive lowest speed below a finite highest one")
@@ -262,12 +278,11 @@ def band_speeds(
     for a, b in _pairs(signed.shape[1] // 2):
         for s in range(1, order + 1):
             detuning = s * parametric - (signed[:, a] - signed[:, b])
-
             for i in np.flatnonzero(np.sign(detuning[:-1]) * np.sign(detuning[1:]) <= 0):
                 if detuning[i + 1] == 0 and i + 2 < len(grid):
                     continue  # The next interval begins with this root.
                 bracket = ((grid[i], detuning[i]), (grid[i + 1], detuning[i + 1]))
-                found += _bands_near(system_at, expand, bracket, (a, b, s), order)
+                found += _bands_near(system_at, expand, bracket, (a, b, s), order, reach)
     # A band is best known from the crossing of its own pair, then from the larger block.
     found.sort(key=lambda item: (not item[0], -len(item[1].band.block.members)))
     bands = _without_repeats([band for _, band in found])
@@ -295,6 +310,7 @@ def _bands_near(
     bracket: tuple[tuple[float, float], tuple[float, float]],
     pair: tuple[int, int, int],
     order: int,
+    reach: float,
 ) -> Iterator[tuple[bool, SpeedBand]]:
     """Bands of the block around one crossing, and whether it is the crossing of the pair that drives them.
 
@@ -315,12 +331,12 @@ def _bands_near(
     if not coupled(expansion, a, b, s):
         return
     _refuse_unstable_mean(expansion)
-    if congruent_block(expansion, a, b, s, expansion.parametric_frequency).growth_bound <= 0:
+    if congruent_block(expansion, a, b, s, expansion.parametric_frequency, reach).growth_bound <= 0:
         return
     if at_low * at_high < 0:
         crossing = float(brentq(residual, low, high, xtol=1e-10 * high))
         expansion = expand(system_at(crossing), order)
-    block = congruent_block(expansion, a, b, s, expansion.parametric_frequency)
+    block = congruent_block(expansion, a, b, s, expansion.parametric_frequency, reach)
 
     def growth(speed: float) -> float:
         here = expand(system_at(speed), order)
@@ -371,6 +387,11 @@ def _expanded(system: PeriodicSystem | ModalExpansion, order: int) -> ModalExpan
     return system
 
 
+def _check_reach(reach: float) -> None:
+    if not (math.isfinite(reach) and reach >= 0):
+        raise ValueError(f"reach = {reach!r}: valid is a finite number, at least 0")
+
+
 def _refuse_unstable_mean(expansion: ModalExpansion) -> None:
     if expansion.mean_growth_rate > _ROUNDING * expansion.frequencies[-1]:
         raise ValueError(
@@ -406,7 +427,7 @@ def _block_bands(
     modes = tuple(sorted({member % block.modes + 1 for member in block.members}))
     intervals = unstable_intervals(block, frequency)
     for lower, upper, peak in intervals:
-        a, b = driving_pair(block, peak)
+        a, b = driving_pair(block, (lower, upper, peak))
         s = block.shifts[a] - block.shifts[b]
         if s < 0:
             a, b, s = b, a, -s
