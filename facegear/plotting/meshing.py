@@ -78,7 +78,7 @@ def tooth_and_contact_lines(tooth: xr.Dataset) -> Figure:
         ``surface`` (flank, along, across, axis) and ``line`` (fraction, point, axis) in the gear's frame [m].
     """
     figure = Figure(figsize=(WIDTH, 4.6))
-    figure.subplots_adjust(left=0.0, right=0.93, bottom=0.02, top=1.05)
+    figure.subplots_adjust(left=0.08, right=0.95, bottom=0.04, top=1.05)
     axes = _axes_3d(figure)
     _draw_tooth(axes, tooth)
     _draw_lines(axes, tooth)
@@ -326,9 +326,9 @@ def contact_ratios_compared(ratios: xr.Dataset, tregold: xr.Dataset, geometric: 
     axes[0].plot(ratios.pinion_teeth, ratios.geometric_contact_ratio, "s-", color=VERMILION, markersize=4)
     axes[0].plot(ratios.pinion_teeth, ratios.contact_ratio, "o-", color=BLUE, markersize=4)
     axes[0].annotate(
-        "true contact lines", (0.5, 0.86), xycoords="axes fraction", color=VERMILION, ha="center"
+        "true contact lines", (0.3, 0.82), xycoords="axes fraction", color=VERMILION, ha="center"
     )
-    axes[0].annotate("Tregold", (0.5, 0.16), xycoords="axes fraction", color=BLUE, ha="center")
+    axes[0].annotate("Tregold", (0.5, 0.22), xycoords="axes fraction", color=BLUE, ha="center")
     axes[0].set(xlabel="number of pinion teeth $N_1$", ylabel="contact ratio", ylim=(1.0, None))
     axes[1].plot(geometric.time, geometric.total_length * _MM, color=VERMILION)
     axes[1].plot(tregold.time, tregold.total_length * _MM, color=BLUE)
@@ -353,9 +353,9 @@ def undercut_condition(condition: xr.Dataset) -> Figure:
     *others, physical = condition["roots"].values
     for root in others:
         axes.plot(root, 0, "o", color=GREY, markersize=8, markerfacecolor="white", zorder=5)
-        label_line(axes, f"$t$ = {root:.4f}\non the far branch", (root, 0), (10, 26))
+        label_line(axes, f"$t$ = {root:.4f}\non the far branch", (root, 0), (8, -52))
     axes.plot(physical, 0, "o", color=VERMILION, markersize=8, zorder=5)
-    label_line(axes, f"$t$ = {physical:.4f}\nphysical", (physical, 0), (-10, 30))
+    label_line(axes, f"$t$ = {physical:.4f}\nphysical", (physical, 0), (-70, -96))
     axes.set(xlabel=r"$t = \tan(\phi_s + \theta_{0s} + \theta_s^*)$", ylabel="condition (left $-$ right)")
     return figure
 
@@ -380,8 +380,8 @@ def limits_against_shaft_angle(limits: xr.Dataset) -> Figure:
     )
     axes[0].plot(limits.shaft_angle_deg, limits.outer_radius * _MM, color=BLUE)
     axes[0].plot(limits.shaft_angle_deg, limits.inner_radius * _MM, color=BLUE)
-    axes[0].annotate("pointed, $R_2$", (0.5, 0.93), xycoords="axes fraction", ha="center")
-    axes[0].annotate("undercut, $R_1$", (0.5, 0.04), xycoords="axes fraction", ha="center")
+    axes[0].annotate("pointed, $R_2$", (0.7, 0.96), xycoords="axes fraction", ha="center")
+    axes[0].annotate("undercut, $R_1$", (0.5, 0.1), xycoords="axes fraction", ha="center")
     axes[0].set(xlabel=r"shaft angle $\gamma$ [degree]", ylabel="radius on the gear plane [mm]")
     axes[1].plot(
         limits.shaft_angle_deg, limits.geometric_contact_ratio, color=VERMILION, label="true contact lines"

@@ -98,7 +98,7 @@ def generation(pinion: Mesh, gear: Mesh) -> Figure:
     axes.add_collection3d(collection)
     low, high = triangles.reshape(-1, 3).min(axis=0), triangles.reshape(-1, 3).max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low)
+    axes.set_box_aspect(high - low, zoom=1.25)
     axes.view_init(elev=32, azim=-62)
     axes.axis("off")
     return figure
@@ -138,6 +138,7 @@ def shaper_profile(drive: Drive, outline: FloatArray, flank: FloatArray, step: i
             va="center",
             color=INK,
             fontsize=10,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8},
         )
     axes.plot(*(flank.T * _MM), color=BLUE, linewidth=2.4)
     # The string that unwinds from the base circle: its length is r_bs θs, its end the point.
@@ -176,7 +177,7 @@ def coordinate_systems(drive: Drive, rotation: float) -> Figure:
     rotation : float
         φs shown [rad]; the face gear's φ2 is drawn larger than m_2s φs so that it can be seen.
     """
-    figure, axes = panels(1, 3, 3.0, width_ratios=(1.5, 1, 1))
+    figure, axes = panels(1, 3, 2.7, width_ratios=(1.7, 1, 1))
     side, shaper, gear = axes
     for panel in axes:
         _bare(panel)
@@ -198,8 +199,8 @@ def coordinate_systems(drive: Drive, rotation: float) -> Figure:
     side.add_patch(Arc((0, 0), 0.34, 0.34, theta1=-np.degrees(shaft), theta2=0, color=INK))
     side.text(0.24, -0.14, r"$\gamma$", va="top")
     side.set_title("(a) both axes", loc="left")
-    side.set_xlim(-1.05, 1.75)
-    side.set_ylim(-1.0, 1.15)
+    side.set_xlim(-1.02, 1.62)
+    side.set_ylim(-0.55, 1.1)
     names = (
         (shaper, "m", "s", rotation, r"$\phi_s$", "(b) shaper"),
         (gear, "p", "2", -rotation, r"$\phi_2$", "(c) face gear"),
@@ -325,14 +326,14 @@ def tregold_cones(drive: Drive) -> Figure:
         tuple(contact - 0.1 * virtual_2 * normal),
         (24, -10),
     )
-    apex = np.array([0.36 * contact[0], 0.0])
-    label_line(axes, r"$\gamma_1$", (apex[0], 0.5 * apex[0] * contact[1] / contact[0]), (26, 18))
-    label_line(
-        axes,
-        r"$\gamma_2$",
-        (0.3 * contact[0] * np.sin(cone_1), -0.3 * contact[0] * np.cos(cone_1)),
-        (-40, -26),
-    )
+    for radius, low, high, name in (
+        (0.7 * contact[0], -np.degrees(cone_1), 0.0, r"$\gamma_1$"),
+        (0.3 * contact[0], -90.0, -np.degrees(cone_1), r"$\gamma_2$"),
+    ):
+        axes.add_patch(Arc((0, 0), 2 * radius, 2 * radius, theta1=low, theta2=high, color=INK))
+        middle = np.radians(0.5 * (low + high))
+        place = {"ha": "center", "va": "center"}
+        _text(axes, 1.07 * radius * np.array([np.cos(middle), np.sin(middle)]), name, **place)
     axes.text(0, 0, "apex ", ha="right", va="bottom")
     # The formative gear's centre lies five pitch radii below: what is near the pitch point is what matters.
     axes.set_xlim(-0.3 * contact[0], 1.75 * contact[0])
