@@ -23,8 +23,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.periodic import ContactLoad, PeriodicSystem
-from facegear.piecewise import Array, PiecewiseChebyshev
+from facegear.periodic import PeriodicSystem
+from facegear.piecewise import Array
 
 ComplexArray = NDArray[np.complex128]
 
@@ -32,11 +32,10 @@ ComplexArray = NDArray[np.complex128]
 DEFAULT_NODES = 16
 #: Largest product of fastest frequency and panel length [rad].
 DEFAULT_PANEL_ANGLE = 9.0
-#: Interpolation error of a shape vector allowed on a panel, relative to its largest component.
-SHAPE_TOLERANCE = 1e-8
-
-# Panels on one smooth piece beyond which a shape vector is refused.
-_MOST_PANELS = 128
+#: Estimated error of the motion over one panel at which it is halved, in units of the root of the energy.
+PANEL_TOLERANCE = 1e-12
+# Rounds of halving before a system is refused.
+_MOST_HALVINGS = 8
 
 
 class UnsuitableSystemError(ValueError):
@@ -126,15 +125,6 @@ class FreeModes:
         return np.concatenate([self.coordinates.real, self.coordinates.imag])
 
 
-def is_suitable(system: PeriodicSystem) -> bool:
-    """Whether the free motion of the constant part is a sum of n oscillations, as collocation needs."""
-    try:
-        FreeModes.of(system)
-    except UnsuitableSystemError:
-        return False
-    return True
-
-
 @lru_cache(maxsize=16)
 def _gauss(nodes: int) -> tuple[Array, Array, Array]:
     """Gauss-Legendre nodes and weights on [0, 1], and a_ij = ∫_0^{x_i} l_j, shape (nodes, nodes)."""
@@ -149,59 +139,15 @@ def _gauss(nodes: int) -> tuple[Array, Array, Array]:
     return (x + 1.0) / 2.0, weights / 2.0, integrals @ coefficients / 2.0
 
 
-@lru_cache(maxsize=64)
-def _panels_for_shape(function: PiecewiseChebyshev, nodes: int) -> tuple[float, ...]:
-    """Longest panel on each piece on which interpolation at the Gauss nodes resolves the function.
-
-    The panel's end value converges twice as fast as the force inside, so the shape vector itself needs half the
-    digits only.
-    """
-    x = _gauss(nodes)[0]
-    probe = (np.arange(4 * nodes) + 0.5) / (4 * nodes)
-    vander = np.polynomial.legendre.legvander
-    interpolate = vander(2 * probe - 1, nodes - 1) @ np.linalg.inv(vander(2 * x - 1, nodes - 1))
-    longest = []
-    for start, length in zip(function.breakpoints, function.lengths, strict=True):
-        count = 1
-        while True:
-            offsets = np.arange(count)[:, None]
-            at_nodes = function(start + length * (offsets + x) / count)
-            between = function(start + length * (offsets + probe) / count)
-            error = np.abs(np.einsum("ij,pjn->pin", interpolate, at_nodes) - between).max()
-            if error <= SHAPE_TOLERANCE * function.largest:
-                break
-            if count == _MOST_PANELS:
-                raise UnsuitableSystemError(
-                    f"a shape vector is too rough between breakpoints: {count} panels do not resolve it to "
-                    f"{SHAPE_TOLERANCE:.0e}"
-                )
-            count += 1
-        longest.append(length / count)
-    return tuple(longest)
-
-
-def _panel_edges(system: PeriodicSystem, nodes: int, fastest: float, panel_angle: float) -> Array:
-    """Return ends of panels: all breakpoints, and points between for fast motion and curved shapes."""
-    ends = np.append(system.breakpoints[1:], 1.0)
-    edges = []
-    for start, end in zip(system.breakpoints, ends, strict=True):
-        count = int(np.ceil((end - start) * fastest * system.period / panel_angle))
-        for load in system.loads:
-            for function in _functions_to_resolve(load):
-                piece = np.searchsorted(function.breakpoints, (start + end) / 2.0, side="right") - 1
-                longest = _panels_for_shape(function, nodes)[piece]
-                count = max(count, int(np.ceil((end - start) / longest - 1e-9)))
-        edges.append(np.linspace(start, end, max(count, 1), endpoint=False))
-    return np.append(np.concatenate(edges), 1.0)
-
-
-def _functions_to_resolve(load: ContactLoad) -> list[PiecewiseChebyshev]:
-    functions = [load.shape]
-    if load.weight is not None:
-        functions.append(load.weight)
-    if load.rate == "total":
-        functions += [load.slope, load.curvature]
-    return functions
+def _panel_edges(breakpoints: Array, angle: float, panel_angle: float) -> Array:
+    """Return ends of panels: all breakpoints, and points between for a fastest motion of `angle` a period."""
+    ends = np.append(breakpoints[1:], 1.0)
+    counts = np.ceil((ends - breakpoints) * angle / panel_angle).astype(int)
+    pieces = [
+        np.linspace(start, end, max(int(count), 1), endpoint=False)
+        for start, end, count in zip(breakpoints, ends, counts, strict=True)
+    ]
+    return np.append(np.concatenate(pieces), 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,8 +188,10 @@ def _build(system: PeriodicSystem, modes: FreeModes, nodes: int, edges: Array) -
     spread = np.exp(modes.eigenvalues * (h[:, None, None] * (x[:, None] - 0.5)))
     half = np.exp(modes.eigenvalues * (h[:, None] / 2.0))
 
-    phi = np.stack([load.shape(fractions) for load in system.loads], axis=2)
-    weighted = np.stack([_weighted_shape(load, fractions) for load in system.loads], axis=2)
+    phi, weighted = np.empty((2, count, nodes, p, n))
+    for a, load in enumerate(system.loads):
+        phi[:, :, a] = load.shape(fractions)
+        weighted[:, :, a] = phi[:, :, a] if load.weight is None else phi[:, :, a] * load.weight(fractions)
     readings = [
         phi @ modes.displacement,
         phi @ modes.velocity,
@@ -281,11 +229,6 @@ def _build(system: PeriodicSystem, modes: FreeModes, nodes: int, edges: Array) -
     )
 
 
-def _weighted_shape(load: ContactLoad, fractions: Array) -> Array:
-    phi = load.shape(fractions)
-    return phi if load.weight is None else phi * load.weight(fractions)
-
-
 @dataclass(frozen=True, eq=False)
 class LoadColumn:
     """Load parameters along a column of a map: V values, p loads.
@@ -307,12 +250,28 @@ class LoadColumn:
             if not np.isfinite(values).all() or (values < 0.0).any():
                 raise ValueError(f"{name} must be finite and >= 0; got {values.min()!r} as smallest value")
 
+    @classmethod
+    def of(cls, system: PeriodicSystem) -> LoadColumn:
+        """Return the one value of each parameter that a system has."""
+        return cls(
+            *(
+                np.array([[getattr(load, name) for load in system.loads]])
+                for name in ("mass", "damping", "stiffness")
+            )
+        )
+
     def __len__(self) -> int:
         return int(self.mass.shape[0])
 
     def stacked(self) -> Array:
         """All parameters, shape (V, 3 p)."""
         return np.concatenate([self.mass, self.damping, self.stiffness], axis=1)
+
+    def extremes(self) -> LoadColumn:
+        """Rows that hold the smallest and the largest of each parameter, and the middle one."""
+        values = self.stacked()
+        rows = np.unique(np.concatenate([values.argmin(axis=0), values.argmax(axis=0), [len(self) // 2]]))
+        return LoadColumn(self.mass[rows], self.damping[rows], self.stiffness[rows])
 
     @classmethod
     def from_stacked(cls, values: Array) -> LoadColumn:
@@ -355,13 +314,40 @@ class FreeMotion:
             [_quadratic(system.mass, load.shape(samples)).max() for load in system.loads]
         )
         stiffest = float((column.stiffness @ self.mobility).max(initial=0.0))
-        most_damped = float((column.damping @ self.mobility).max(initial=0.0))
-        free = float(np.abs(self.modes.eigenvalues).max())
-        self.edges = _panel_edges(
-            system, nodes, float(np.hypot(free, np.sqrt(stiffest))) + most_damped, panel_angle
-        )
+        fastest = float(np.hypot(np.abs(self.modes.eigenvalues).max(), np.sqrt(stiffest)))
+        self.edges = _panel_edges(system.breakpoints, fastest * system.period, panel_angle)
         self.panels = _build(system, self.modes, nodes, self.edges)
+        self._halve_unresolved_panels(column.extremes(), nodes)
         self.kicks = self._kick_data()
+
+    def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> None:
+        """Halve panels until the contact forces of all initial states are resolved at the given values.
+
+        The state at the end of a panel converges twice as fast as the force along it: if the last Legendre
+        coefficients of the force are ε of its size, ε² is left of its effect.
+        """
+        x, weights, _ = _gauss(nodes)
+        last = np.polynomial.legendre.legvander(2.0 * x - 1.0, nodes - 1)[:, -2:]
+        tail = (last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T
+        for _ in range(_MOST_HALVINGS):
+            force = self._forces(column)
+            shape = (*force.shape[:2], nodes, -1, force.shape[-1])
+            size = np.abs(force).max(axis=2, initial=0.0)
+            rough = np.abs(np.einsum("ti,vpias->vptas", tail, force.reshape(shape))).max(
+                axis=(2, 3), initial=0.0
+            )
+            effect = np.abs(self.panels.input).sum(axis=-1).max(axis=-1)
+            relative = rough / np.where(size > 0.0, size, 1.0)
+            error = (effect[:, None] * size * relative**2).max(axis=(0, 2), initial=0.0)
+            unresolved = error > PANEL_TOLERANCE
+            if not unresolved.any():
+                return
+            middle = (self.edges[:-1] + self.edges[1:]) / 2.0
+            self.edges = np.sort(np.concatenate([self.edges, middle[unresolved]]))
+            self.panels = _build(self.system, self.modes, nodes, self.edges)
+        raise UnsuitableSystemError(
+            f"the contact forces are too rough: {self.edges.size - 1} panels do not resolve them"
+        )
 
     def _kick_data(self) -> list[tuple[int, int, Array, Array]]:
         """Panel, load, φ and Δφ̇ of each slope jump of a load with total rate."""
@@ -389,19 +375,22 @@ class FreeMotion:
             )
         return np.concatenate(parts)
 
-    def _chunk(self, column: LoadColumn) -> Array:
+    def _forces(self, column: LoadColumn) -> Array:
+        """Contact forces at the nodes of each panel, for unit modal coordinates at its start, (V, P, N p, 2n)."""
         panels = self.panels
-        repeats = panels.input.shape[-1] // max(len(self.system.loads), 1)
-        left = np.broadcast_to(
-            np.eye(panels.input.shape[-1]), (len(column), *panels.force_on_force.shape[1:])
-        ).copy()
+        size = panels.input.shape[-1]
+        repeats = size // max(len(self.system.loads), 1)
+        left = np.broadcast_to(np.eye(size), (len(column), *panels.force_on_force.shape[1:])).copy()
         right = np.zeros((len(column), *panels.force_on_state.shape[1:]))
         for order, values in enumerate((column.stiffness, column.damping, column.mass)):
             if values.any():
                 factor = np.tile(values, (1, repeats))[:, None, :, None]
                 left += factor * panels.force_on_force[order]
                 right += factor * panels.force_on_state[order]
-        steps = panels.free - panels.input @ np.linalg.solve(left, right)
+        return np.asarray(np.linalg.solve(left, right), dtype=float)
+
+    def _chunk(self, column: LoadColumn) -> Array:
+        steps = self.panels.free - self.panels.input @ self._forces(column)
         for panel, matrices in self._kicks(column).items():
             steps[:, panel] = steps[:, panel] @ matrices
         return chain(steps)
@@ -440,6 +429,15 @@ def chain(steps: Array) -> Array:
     return steps[:, 0]
 
 
+def is_suitable(system: PeriodicSystem) -> bool:
+    """Whether contact-force collocation applies: oscillating free modes, contact forces it resolves."""
+    try:
+        FreeMotion(system, LoadColumn.of(system))
+    except UnsuitableSystemError:
+        return False
+    return True
+
+
 def transition_matrix(
     system: PeriodicSystem, nodes: int = DEFAULT_NODES, panel_angle: float = DEFAULT_PANEL_ANGLE
 ) -> Array:
@@ -458,12 +456,7 @@ def transition_matrix(
     UnsuitableSystemError
         If the free motion has rigid-body, overdamped or defective modes.
     """
-    column = LoadColumn(
-        *(
-            np.array([[getattr(load, name) for load in system.loads]])
-            for name in ("mass", "damping", "stiffness")
-        )
-    )
+    column = LoadColumn.of(system)
     motion = FreeMotion(system, column, nodes, panel_angle)
     matrix = motion.transition_matrices(column)[0]
     return np.asarray(motion.modes.state_from_real() @ matrix @ motion.modes.real_from_state(), dtype=float)

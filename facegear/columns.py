@@ -20,7 +20,7 @@ from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
-TOLERANCE = 1e-11
+TOLERANCE = 1e-10
 
 
 def column_spectral_radii(
