@@ -133,9 +133,9 @@ def resonance_bands(
     order : int
         Highest s.
     reach : float
-        Further eigenvalues join a pair whose detuning is less than ``reach`` times their coupling to it. With 0
-        each pair stands alone, as in 2-26 to 2-28; multiple natural frequencies are then not taken together, and
-        resonances that are driven by way of a third eigenvalue are missed.
+        Further eigenvalues join a pair if closer to it than ``reach`` times their coupling to it. With 0 each pair
+        stands alone, as in 2-26 to 2-28: multiple natural frequencies are then not taken together, and
+        resonances driven by way of a third eigenvalue are missed.
 
     Returns
     -------
@@ -152,7 +152,7 @@ def resonance_bands(
     -----
     Matrices are taken as they are at the system's period, as functions of the fraction of the period; the
     parametric frequency alone varies. Where they change with speed use :func:`band_speeds`. Differences of
-    frequencies within some ten times their coupling are left out: a modulation as slow as the growth it causes
+    frequencies within three times their coupling are left out: a modulation as slow as the growth it causes
     is not averaged.
     """
     expansion = _expanded(system, order)

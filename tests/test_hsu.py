@@ -606,6 +606,106 @@ def test_contact_mass_carried_along_a_path_with_a_kink():
     assert fitted_order(sizes, errors) > 1.8
 
 
+# --- the dissertation's torsional systems, by its own inputs ----------------------------------------------------
+
+RPM = TURN / 60
+INNER, OUTER, CONTACT_RATIO, TEETH = 0.1559320, 0.1895205, 1.5632891, 107
+COS = math.cos(math.radians(25))
+BASE = 31 * 3.175e-3 / 2 * COS
+MESH_STIFFNESS = 1.58e8
+
+
+def torsional(input_stiffness, output_stiffness, input_damping, output_damping):
+    """7-10 to 7-13 at a speed of the face gear in rad/s, and its matrices over one period."""
+    pinion = 0.5 * math.pi * 7840 * BASE**4 * (OUTER - INNER)
+    mass = np.diag([pinion, 91.97 * pinion, 101.17 * pinion])
+
+    def shafts(first, second):
+        return np.array([[first, 0, 0], [0, second, -second], [0, -second, second]])
+
+    damping, stiffness = shafts(input_damping, output_damping), shafts(input_stiffness, output_stiffness)
+    mesh_damping = 1e-5 * MESH_STIFFNESS
+    slope = -(OUTER - INNER) / CONTACT_RATIO
+
+    def arm(fraction, number):
+        return np.array([BASE, -(OUTER + slope * (fraction + number)) * COS, 0.0])
+
+    def tooth_pair(number):
+        def shape(x, piece):
+            return (piece == 0 or number == 0) * np.stack([arm(f, number) for f in np.atleast_1d(x)])
+
+        fitted = PiecewiseChebyshev.fit(shape, [0.0, CONTACT_RATIO - 1])
+        return ContactLoad(fitted, stiffness=MESH_STIFFNESS, damping=mesh_damping, rate="total")
+
+    loads = [tooth_pair(0), tooth_pair(1)]
+
+    def at(speed):
+        return PeriodicSystem(mass, damping, stiffness, loads, TURN / (TEETH * speed))
+
+    def growth(speed):
+        period = TURN / (TEETH * speed)
+
+        def rate(time, x):
+            q, v = x[:3], x[3:]
+            force = -damping @ v - stiffness @ q
+            for number in (0, 1) if time / period < CONTACT_RATIO - 1 else (0,):
+                g = arm(time / period, number)
+                turning = np.array([0.0, -slope / period * COS, 0.0])
+                force = force - np.outer(g, MESH_STIFFNESS * (g @ q) + mesh_damping * (g @ v + turning @ q))
+            return np.concatenate([v, np.linalg.solve(mass, force)])
+
+        return pieces_growth(rate, 6, period, (0.0, CONTACT_RATIO - 1 - 1e-14, 1.0))
+
+    return at, growth
+
+
+def covers(bands, speed_rpm):
+    return [band.label for band in bands if band.lower < speed_rpm * RPM < band.upper]
+
+
+def test_statements_about_the_input_shaft():
+    # Fig. 7.12(a): principal, secondary; Hsu misses the subharmonic near 160 rpm, and has a third-order band near
+    # 215 rpm that the text does not mention and that is not there.
+    stiffness = (0.009 * MESH_STIFFNESS, 0.1 * MESH_STIFFNESS)
+    at, growth = torsional(*stiffness, 1.0, 1e-5 * stiffness[1])
+    bands = hsu.band_speeds(at, (140 * RPM, 1000 * RPM), order=4, reach=0.0)
+    assert covers(bands, 650) == ["(1+1)/1"]
+    assert covers(bands, 322) == ["(1+1)/2"]
+    assert covers(bands, 215) == ["(1+1)/3"]
+    assert growth(215 * RPM) < 0
+    assert covers(bands, 159) == []
+    assert growth(159 * RPM) > 0
+
+
+def test_statements_about_the_output_shaft():
+    # Fig. 7.13(a): the combination (1+2)/2 near 570 rpm is missed by pairs alone. Its own coupling, of second
+    # order s, is too small; it lives on two couplings of order 1, which the block of three eigenvalues has.
+    stiffness = (0.1 * MESH_STIFFNESS, 0.03 * MESH_STIFFNESS)
+    at, growth = torsional(*stiffness, 1e-5 * stiffness[0], 1.0)
+    pairs = hsu.band_speeds(at, (500 * RPM, 700 * RPM), order=3, reach=0.0)
+    assert covers(pairs, 570) == []
+    bands = hsu.band_speeds(at, (500 * RPM, 700 * RPM), order=3)
+    assert covers(bands, 570) == ["(1+2)/2"]
+    assert covers(bands, 650) == ["(1+1)/1"]
+    (combination,) = [band for band in bands if band.label == "(1+2)/2"]
+    lower = brentq(lambda v: growth(v * RPM), 550, 570, xtol=0.1)
+    upper = brentq(lambda v: growth(v * RPM), 570, 600, xtol=0.1)
+    assert combination.lower / RPM == pytest.approx(lower, rel=0.01)
+    assert combination.upper / RPM == pytest.approx(upper, rel=0.01)
+
+
+def test_dissertations_own_expansion_gives_the_same_bands():
+    stiffness = (0.009 * MESH_STIFFNESS, 0.1 * MESH_STIFFNESS)
+    at, _ = torsional(*stiffness, 1.0, 1e-5 * stiffness[1])
+    bands = [
+        hsu.band_speeds(at, (250 * RPM, 900 * RPM), order=2, points=11, reach=0.0, expand=expand)
+        for expand in (modal_expansion, lambda system, order: standard_form(system, order).expansion())
+    ]
+    for one, other in zip(*bands, strict=True):
+        assert one.label == other.label
+        assert (one.lower, one.upper) == pytest.approx((other.lower, other.upper), rel=2e-4)
+
+
 # --- invariants ---------------------------------------------------------------------------------------------
 
 entry = st.floats(-1.0, 1.0)
@@ -657,6 +757,15 @@ def test_bands_follow_the_unit_of_time(system, factor):
         assert (factor * one.lower, factor * one.upper) == pytest.approx((other.lower, other.upper), rel=1e-6)
         assert one.growth(one.lower) == pytest.approx(0, abs=1e-7)
         assert one.growth(one.upper) == pytest.approx(0, abs=1e-7)
+
+
+@CHECK
+@given(system=symmetric_systems(damped=True))
+def test_no_band_grows_faster_than_the_bound_of_its_block(system):
+    for band in hsu.resonance_bands(system, order=2):
+        assert 0 < band.growth_rate <= band.block.growth_bound * (1 + 1e-9)
+        around = np.linspace(0.5, 1.5, 101) * band.peak
+        assert band.growth(around).max() <= band.block.growth_bound * (1 + 1e-9)
 
 
 @CHECK
@@ -741,6 +850,8 @@ def test_bad_speeds():
     for wrong in ((0.0, 1.0), (2.0, 1.0), (1.0, math.nan), (1.0, math.inf)):
         with pytest.raises(ValueError, match="speeds = "):
             hsu.band_speeds(at, wrong)
+    with pytest.raises(ValueError, match="reach = -1"):
+        hsu.resonance_bands(mathieu(0.1), reach=-1)
     with pytest.raises(ValueError, match="points = 1"):
         hsu.band_speeds(at, (1.0, 2.0), points=1)
 
