@@ -38,8 +38,7 @@ from facegear.periodic import PeriodicSystem
 Array = NDArray[np.float64]
 Kind = Literal["sum", "difference"]
 
-# Relative size below which a rate is rounding.
-_ROUNDING = 1e-11
+_ROUNDING = 1e-11  # Relative size below which a rate is rounding.
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,8 +144,8 @@ def resonance_bands(
     Raises
     ------
     ValueError
-        If the mean system is unstable by itself, or has a rigid-body mode, or ``order`` exceeds that of the
-        expansion given.
+        If the mean system is unstable or has a rigid-body mode, ``order`` exceeds that of the expansion given, or
+        ``reach`` is negative.
 
     Notes
     -----
@@ -155,8 +154,7 @@ def resonance_bands(
     frequencies within three times their coupling are left out: a modulation as slow as the growth it causes
     is not averaged.
     """
-    expansion = _expanded(system, order)
-    _check_reach(reach)
+    expansion = _expanded(system, order, reach)
     _refuse_unstable_mean(expansion)
     bands: list[ResonanceBand] = []
     seen: set[tuple[tuple[int, int], ...]] = set()
@@ -196,8 +194,7 @@ def growth_rate_at(
         else:
             mean = modal_expansion(system, 1)
             order = max(1, round(2 * float(mean.frequencies[-1]) / mean.parametric_frequency))
-    expansion = _expanded(system, order)
-    _check_reach(reach)
+    expansion = _expanded(system, order, reach)
     frequency = expansion.parametric_frequency
     signed = expansion.signed_frequencies
     best = expansion.mean_growth_rate
@@ -368,16 +365,19 @@ def _bands_near(
                 raise ArithmeticError(
                     f"the band {band.label} near speed {crossing:.6g} has no border to be found"
                 )
-            if outside <= 0:
-                borders.append(0.0)
-                continue
-            borders.append(float(brentq(lambda v: growth(v) - level, inside, outside, xtol=1e-9 * crossing)))
+            found = (
+                brentq(lambda v: growth(v) - level, inside, outside, xtol=1e-9 * crossing)
+                if outside > 0
+                else 0
+            )
+            borders.append(float(found))
         centre = band.centre * per_speed
         yield abs(centre - crossing) <= 1e-9 * crossing, SpeedBand(borders[0], borders[1], centre, band)
 
 
-def _expanded(system: PeriodicSystem | ModalExpansion, order: int) -> ModalExpansion:
+def _expanded(system: PeriodicSystem | ModalExpansion, order: int, reach: float) -> ModalExpansion:
     check_order(order)
+    _check_reach(reach)
     if isinstance(system, PeriodicSystem):
         return modal_expansion(system, order)
     if not isinstance(system, ModalExpansion):

@@ -180,7 +180,7 @@ def test_growth_rate_is_the_largest_real_part_of_the_autonomous_system(kind):
 
 @pytest.mark.parametrize("kind", ["sum", "difference"])
 def test_autonomous_matrix_follows_from_2_25_by_a_rotation(kind):
-    # ẋ = M(t) x and x = R(t) z with R = diag exp(i r Λ t) has to give ż = N z: N R' = ... checked in numbers.
+    # With x = R z, R = diag exp(−i r t), ẋ = M x becomes ż = N z, N = R⁻¹ M R + i r: M = R (N − i r) R⁻¹.
     derivation = hsu.derive(kind)
     values = values_of([*derivation.complex_matrix], 11)
     detuning, time = 0.37, 1.9
