@@ -1,11 +1,13 @@
-"""A made-up system with the structure of the transverse model: 14 coordinates of a spinning disk, 28 states.
+"""Made-up systems with the structure of the transverse (28 states) and of the torsional model (6 states).
 
-Two nodal circles times nodal diameters 0 to 3 in cosine and sine, gyroscopic coupling, a slight viscous loss, and
-contact points that move over the disk along an analytic path with kinks at four instants. No gear geometry enters,
+The disk: two nodal circles times nodal diameters 0 to 3 in cosine and sine, gyroscopic coupling, a slight
+viscous loss, and contact points that move over the disk along an analytic path with kinks at four instants. No gear geometry enters,
 so that the Floquet engine can be tested and timed without the chapters that build on it.
 """
 
 from __future__ import annotations
+
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,3 +113,23 @@ def synthetic_disk(
         for shape in shapes
     )
     return PeriodicSystem(np.eye(14), damping, stiffness, loads, 2.0 * np.pi / (GEAR_TEETH * speed))
+
+
+@cache
+def _mesh_shapes() -> tuple[PiecewiseChebyshev, PiecewiseChebyshev]:
+    """Arms of two tooth pairs on three rotations: one leaves mesh at 0.5668 of the period, one stays."""
+
+    def arms(x: Array) -> Array:
+        return np.stack([0.0446 + 0.0 * x, -0.25 + 0.03 * x, 0.0 * x], axis=1)
+
+    leaving = PiecewiseChebyshev.fit(lambda x, piece: arms(x) * (1 - piece), [0.0, 0.5668])
+    return leaving, PiecewiseChebyshev.fit(lambda x, _: arms(x - 1.0), [0.0])
+
+
+def synthetic_shafts(input_stiffness: float, period: float = 0.002) -> PeriodicSystem:
+    """Build three inertias with 6 states; they rotate as a body where the shaft to ground is off."""
+    loads = [ContactLoad(shape, 1.58e8, 200.0, 0.0, "total") for shape in _mesh_shapes()]
+    inertia = np.diag([1.64e-3, 0.151, 0.166])
+    shaft = 3e5
+    stiffness = np.array([[input_stiffness, 0.0, 0.0], [0.0, shaft, -shaft], [0.0, -shaft, shaft]])
+    return PeriodicSystem(inertia, 1e-6 * stiffness, stiffness, tuple(loads), period)

@@ -21,6 +21,8 @@ from facegear.piecewise import Array
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
+#: General route of columns; what it estimates is the error before its last extrapolation.
+GENERAL_ROUTE = AdaptiveMagnus(1e-9)
 
 
 def column_spectral_radii(
@@ -68,7 +70,7 @@ def family_spectral_radii(
         their meaning and breakpoints that stay.
     values : array_like, shape (V,)
     method : Method, optional
-        :class:`facegear.floquet.AdaptiveMagnus` if left out.
+        Adaptive Magnus if left out.
 
     Returns
     -------
@@ -78,8 +80,10 @@ def family_spectral_radii(
     if points.ndim != 1 or points.size == 0:
         raise ValueError(f"values must have shape (V,), V >= 1; got shape {points.shape}")
 
-    def evaluate(chosen: Array) -> Array:
-        return transition_matrices([system_at(float(value)) for value in chosen], method)
+    chosen = GENERAL_ROUTE if method is None else method
+
+    def evaluate(part: Array) -> Array:
+        return transition_matrices([system_at(float(value)) for value in part], chosen)
 
     return _spectral_radii(interpolate(evaluate, points, TOLERANCE))
 
@@ -100,7 +104,7 @@ def column_transition_matrices(
         try:
             motion = FreeMotion(system, column)
         except UnsuitableSystemError:
-            method = AdaptiveMagnus()
+            method = GENERAL_ROUTE
         else:
             evaluate = motion.transition_matrices
             mobility = float(motion.mobility.max(initial=0.0))

@@ -129,7 +129,7 @@ class Magnus:
 
 @dataclass(frozen=True)
 class AdaptiveMagnus:
-    """Magnus integrator, every sub-interval halved until two results agree, then extrapolated.
+    """Magnus integrator, sub-intervals halved and extrapolated (up to order 10) until two results agree.
 
     Parameters
     ----------
@@ -152,25 +152,27 @@ class AdaptiveMagnus:
         family = Family(systems)
         start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
         factor = 1
-        coarse = family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)
+        row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
         while True:
             factor *= 2
             edges = aligned_edges(family.breakpoints, start, factor)
-            fine = family.product(edges, gauss_magnus)
-            # The method is symmetric: its error runs in even powers, h⁴ + h⁶, so one extrapolation leaves h⁶.
-            correction = (fine - coarse) / 15.0
-            size = np.maximum(np.abs(fine).max(axis=(1, 2)), 1.0)
-            if (np.abs(correction).max(axis=(1, 2)) <= self.tolerance * size).all():
-                return fine + correction
-            if edges.size > 2**17:
+            finer = [family.product(edges, gauss_magnus)]
+            # The method is symmetric, its error runs in even powers h⁴, h⁶, ...: Richardson's extrapolation.
+            for order, coarse in zip((4, 6, 8), row, strict=False):
+                finer.append(finer[-1] + (finer[-1] - coarse) / (2.0**order - 1.0))
+            size = np.maximum(np.abs(finer[-1]).max(axis=(1, 2)), 1.0)
+            change = np.abs(finer[-1] - finer[-2]).max(axis=(1, 2))
+            if (change <= self.tolerance * size).all():
+                return finer[-1]
+            if edges.size > 2**17 or not np.isfinite(size).all():
                 raise ArithmeticError(
                     f"transition matrix did not reach tolerance {self.tolerance:.1g} with {edges.size - 1} "
-                    "sub-intervals; the period is too long for the fastest motion"
+                    "sub-intervals; the period is too long for the fastest motion or growth"
                 )
-            coarse = fine
+            row = finer
 
     def refined(self) -> Method:
-        """Return a hundredth of the tolerance, which halves the sub-intervals at least once more."""
+        """Return the method with a hundredth of the tolerance."""
         return AdaptiveMagnus(max(self.tolerance / 100.0, 1e-13))
 
 

@@ -21,12 +21,12 @@ from benchmarks.synthetic_disk import (
     piece_of,
     shape_vector,
     synthetic_disk,
+    synthetic_shafts,
 )
 from facegear.collocation import FreeModes, LoadColumn, UnsuitableSystemError, chain, transition_matrix
 from facegear.columns import column_spectral_radii, family_spectral_radii, interpolate
 from facegear.floquet import AdaptiveMagnus, Collocation, multipliers, spectral_radii
-from facegear.periodic import ContactLoad, PeriodicSystem
-from facegear.piecewise import PiecewiseChebyshev
+from facegear.periodic import PeriodicSystem
 
 RPM = np.pi / 30.0
 
@@ -130,24 +130,8 @@ def test_columns_with_total_rate(shapes):
         assert radii[i] == pytest.approx(exact, abs=1e-9 * max(1.0, exact))
 
 
-def torsional_like(input_stiffness, period=0.002):
-    """Three inertias, free to rotate as a body where the shaft to ground is off; mesh with total rate."""
-
-    def arm(x, piece):
-        values = np.stack([0.0446 + 0.0 * x, -0.25 + 0.03 * x, 0.0 * x], 1)
-        return values if piece == 0 else 0.0 * values
-
-    shape = PiecewiseChebyshev.fit(arm, [0.0, 0.5668])
-    whole = PiecewiseChebyshev.fit(lambda x, _: np.stack([0.0446 + 0 * x, -0.28 + 0.03 * x, 0 * x], 1), [0.0])
-    loads = [ContactLoad(each, 1.58e8, 200.0, 0.0, "total") for each in (shape, whole)]
-    inertia = np.diag([1.64e-3, 0.151, 0.166])
-    shaft = 3e5
-    stiffness = np.array([[input_stiffness, 0, 0], [0, shaft, -shaft], [0, -shaft, shaft]], dtype=float)
-    return PeriodicSystem(inertia, 1e-6 * stiffness, stiffness, loads, period)
-
-
 def test_rigid_body_motion_takes_the_general_route():
-    system = torsional_like(0.0)
+    system = synthetic_shafts(0.0)
     with pytest.raises(UnsuitableSystemError, match="rigid-body"):
         transition_matrix(system)
     damping = np.linspace(50.0, 400.0, 20)
@@ -159,8 +143,8 @@ def test_rigid_body_motion_takes_the_general_route():
 
 def test_any_analytic_parameter_can_be_swept():
     values = np.linspace(1e5, 6e5, 50)
-    radii = family_spectral_radii(torsional_like, values)
-    direct = spectral_radii([torsional_like(value) for value in values], AdaptiveMagnus(1e-12))
+    radii = family_spectral_radii(synthetic_shafts, values)
+    direct = spectral_radii([synthetic_shafts(value) for value in values], AdaptiveMagnus(1e-12))
     assert np.abs(radii - direct).max() < 1e-8
 
 
