@@ -4,6 +4,12 @@ The disk is discretised by its own modes. With w = Σ R_mn(r) e^{inθ} η_mn (4-
 each pair ±n becomes √2 R_mn (A_mn cos nθ + B_mn sin nθ): as many real coordinates as complex ones, the same
 motion, and nothing rescaled (:mod:`facegear.symbolic.galerkin` derives it). The deflection is w = φ(r, θ)ᵀq;
 the equations are divided by 2πρh, as in (4-8), so that the mass matrix of the disk is the identity.
+
+Two things about θ_c are easily lost. Tregold's contact ratio compresses the sweep of the contact with the
+rotation that belongs to it, so that the contact still turns nearly as fast as the face gear (section 3.7):
+`contact_centroid` shrinks the angle by the same factor as the time. And θ_c falls as the teeth pass (section
+3.6), while the disk of (4-1) turns towards growing θ: taken together as printed, contact and disk turn in
+opposite senses. `Transverse` follows the printed equations unless told otherwise.
 """
 
 from __future__ import annotations
@@ -12,7 +18,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +36,8 @@ from facegear.parameters import (
 from facegear.periodic import ContactLoad, PeriodicSystem, Rate
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body, RadialModes, centrifugal_stiffness
+
+Travel = Literal["printed", "with_disk"]
 
 REFERENCE_SPEED = float(rad_per_s(1000.0))
 """End of the speed range over which the reference stiffness is averaged [rad/s of the face gear]."""
@@ -212,14 +220,15 @@ def contact_centroid(path: ContactPath) -> PiecewiseChebyshev:
     Returns
     -------
     PiecewiseChebyshev
-        r_c over the outer radius [-] and θ_c [rad].
+        r_c over the outer radius [-] and θ_c [rad], the angle shrunk by contact ratio over geometric one.
     """
     edges = np.append(path.breakpoints, 1.0)
+    shrinking = path.contact_ratio / path.drive.geometric_contact_ratio
 
     def position(fraction: FloatArray, piece: int) -> FloatArray:
         start, end = edges[piece], edges[piece + 1]
         centroid = path.centroid_on_piece(piece, (2 * fraction - start - end) / (end - start))
-        return np.stack([centroid.radius / path.drive.outer_radius, centroid.angle], axis=-1)
+        return np.stack([centroid.radius / path.drive.outer_radius, shrinking * centroid.angle], axis=-1)
 
     return PiecewiseChebyshev.fit(position, path.breakpoints)
 
@@ -275,6 +284,12 @@ def rotated(body: Body, shape: PiecewiseChebyshev, angle: float) -> PiecewiseChe
     return PiecewiseChebyshev(shape.breakpoints, shape.coefficients @ rotation.T)
 
 
+def mirrored(body: Body, shape: PiecewiseChebyshev) -> PiecewiseChebyshev:
+    """Shape vector at the opposite angle, φ(r_c, -θ_c) from φ(r_c, θ_c)."""
+    signs = np.array([-1.0 if coordinate.wave == "sin" else 1.0 for coordinate in coordinates(body)])
+    return PiecewiseChebyshev(shape.breakpoints, shape.coefficients * signs)
+
+
 @dataclass(frozen=True)
 class Transverse:
     """Transverse vibration of a face gear under one or more equal pinions (4-8, 5-6).
@@ -294,6 +309,10 @@ class Transverse:
     rate : {"frozen", "total"}
         Whether the pinion follows ∂w/∂t at the contact centroid ("frozen", as printed in 4-1) or the deflection
         under the moving centroid ("total").
+    travel : {"printed", "with_disk"}
+        Whether the disk turns towards growing θ while the contact turns towards falling θ, (4-1) and section
+        3.6 as printed, or contact, disk and the order in which a tooth meets the pinions agree ("with_disk":
+        all angles against the disk's rotation).
 
     Raises
     ------
@@ -314,6 +333,7 @@ class Transverse:
     pinion_angles: Sequence[float] = (0.0,)
     contact_ratio: float | None = None
     rate: Rate = "frozen"
+    travel: Travel = "printed"
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
@@ -322,6 +342,8 @@ class Transverse:
             raise TypeError(f"load must be a MeshLoad, got {self.load!r}")
         if self.rate not in ("frozen", "total"):
             raise ValueError(f"rate must be 'frozen' or 'total', got {self.rate!r}")
+        if self.travel not in ("printed", "with_disk"):
+            raise ValueError(f"travel must be 'printed' or 'with_disk', got {self.travel!r}")
         # Fails here rather than at the first use if the contact ratio is not valid.
         object.__setattr__(self, "contact_ratio", _path(self.body, self.contact_ratio).contact_ratio)
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
@@ -356,10 +378,13 @@ class Transverse:
         drive = self.body.drive
         first = contact_shape(self.body.modes, _path(self.body, self.contact_ratio))
         phases = phase_split(drive, self.pinion_angles).phase
-        return tuple(
+        shapes = (
             rotated(self.body, first, angle).shift(phase)
             for angle, phase in zip(self.pinion_angles, phases, strict=True)
         )
+        if self.travel == "with_disk":
+            shapes = (mirrored(self.body, shape) for shape in shapes)
+        return tuple(shapes)
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed (4-10, 5-6).

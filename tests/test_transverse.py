@@ -20,6 +20,7 @@ from facegear.plate import Body
 from facegear.symbolic import galerkin
 from facegear.transverse import (
     Transverse,
+    contact_centroid,
     contact_shape,
     coordinates,
     disk_matrices,
@@ -33,6 +34,8 @@ from tests.independent.complex_galerkin import ComplexDisk, Pinion
 from tests.independent.complex_galerkin import multipliers as complex_multipliers
 
 CASE_ONE = Body(Drive(26, 130, 3.175e-3), 0.03)
+# Tregold's clock compresses time and rotation alike.
+SHRINKING = CASE_ONE.drive.contact_ratio / CASE_ONE.drive.geometric_contact_ratio
 
 
 @cache
@@ -203,13 +206,15 @@ def complex_pinions(transverse: Transverse) -> list[Pinion]:
     """Centroids of the pinions by (5-1) to (5-4), straight from the contact path."""
     drive = transverse.body.drive
     path = ContactPath(drive, transverse.contact_ratio)
+    shrinking = transverse.contact_ratio / drive.geometric_contact_ratio
+    sense = {"printed": 1, "with_disk": -1}[transverse.travel]
     pinions = []
     for angle in transverse.pinion_angles:
         phase = angle / (2 * math.pi / drive.gear_teeth) % 1.0
 
         def position(x, angle=angle, phase=phase):
             centroid = path.centroid(x + phase)
-            return centroid.radius, centroid.angle + angle
+            return centroid.radius, sense * (shrinking * centroid.angle + angle)
 
         pinions.append(Pinion(position, [(instant - phase) % 1.0 for instant in path.breakpoints]))
     return pinions
@@ -261,10 +266,18 @@ class TestAgainstTheComplexForm:
             {"pinion_angles": (0.0, math.radians(120.0))},
             {"pinion_angles": (0.0, math.radians(90.0), math.radians(200.0))},
             {"contact_ratio": CASE_ONE.drive.geometric_contact_ratio},
+            {"pinion_angles": (0.0, math.radians(100.0)), "travel": "with_disk"},
             {"mass": 0.0},
             {"body": Body(CASE_ONE.drive, 0.05, nodal_circles=2, nodal_diameters=4)},
         ],
-        ids=["two pinions", "three pinions", "geometric contact ratio", "no mass", "more modes"],
+        ids=[
+            "two pinions",
+            "three pinions",
+            "geometric contact ratio",
+            "travel with the disk",
+            "no mass",
+            "more modes",
+        ],
     )
     def test_variants(self, options):
         transverse, speed = model(0.5, **options), float(rad_per_s(600.0))
@@ -314,7 +327,7 @@ class TestTransverse:
         transverse = model(0.6)
         system = transverse.system(1e-9)
         centroid = ContactPath(CASE_ONE.drive).centroid(0.4)
-        shape = shape_vector(CASE_ONE, centroid.radius, centroid.angle)
+        shape = shape_vector(CASE_ONE, centroid.radius, SHRINKING * centroid.angle)
         areal = 2 * np.pi * 7840 * CASE_ONE.thickness
         under_load = areal / (shape @ np.linalg.solve(system.stiffness_matrix(0.4), shape))
         alone = disk_stiffness(CASE_ONE, 0.0, float(centroid.radius))
@@ -328,7 +341,7 @@ class TestTransverse:
         phase = phase_split(CASE_ONE.drive, angle).phase
         x = np.linspace(0, 1, 57)
         centroid = ContactPath(CASE_ONE.drive).centroid(x + phase)
-        expected = shape_vector(CASE_ONE, centroid.radius, centroid.angle + angle)
+        expected = shape_vector(CASE_ONE, centroid.radius, SHRINKING * centroid.angle + angle)
         np.testing.assert_allclose(second(x), expected, atol=1e-10 * np.abs(expected).max())
         assert np.abs(first(x) - second(x)).max() > 1e-3 * np.abs(expected).max()
 
@@ -339,11 +352,51 @@ class TestTransverse:
         jumps = np.abs(shape.derivative().jumps()).max(axis=1)
         assert np.all(jumps > 1e-3 * largest)
 
+    @pytest.mark.parametrize("clock", ["contact_ratio", "geometric_contact_ratio"])
+    def test_contact_turns_nearly_as_fast_as_the_gear(self, clock):
+        """Section 3.7: slope about one; section 3.6: θ falls. Read off where one pair alone is in mesh."""
+        drive = CASE_ONE.drive
+        ratio = getattr(drive, clock)
+        path = ContactPath(drive, ratio)
+        angle = path.contact_point([0.0, 1.0]).angle * ratio / drive.geometric_contact_ratio
+        assert -1.0 < (angle[1] - angle[0]) / (drive.angular_pitch * ratio) < -0.9
+        if clock == "contact_ratio":
+            x = np.array([0.75, 0.95])
+            turn = drive.angular_pitch * (x[1] - x[0])
+            assert -1.1 < np.diff(contact_centroid(path)(x)[:, 1])[0] / turn < -0.8
+
+    def test_travel_with_the_disk(self):
+        """All angles change sign, which is the same as a disk that turns the other way."""
+        angles = (0.0, CASE_ONE.drive.angular_pitch * (7 + 1 / 3))
+        printed, turned = (model(0.5, pinion_angles=angles, travel=t) for t in ("printed", "with_disk"))
+        x = np.linspace(0, 1, 11)
+        for one, other in zip(printed.shapes, turned.shapes, strict=True):
+            for coordinate, a, b in zip(coordinates(CASE_ONE), one(x).T, other(x).T, strict=True):
+                np.testing.assert_array_equal(b, -a if coordinate.wave == "sin" else a)
+        system = printed.system(60.0)
+        backwards = replace(
+            system,
+            damping=np.diag(np.diag(system.damping)) * 2 - system.damping,
+            stiffness=system.stiffness.T,
+        )
+        assert (
+            greatest_distance(floquet.multipliers(backwards), floquet.multipliers(turned.system(60.0))) < 1e-9
+        )
+
+    def test_teeth_meet_the_pinions_one_after_the_other(self):
+        """With the disk: a tooth under the second pinion is under the first θc/θN mesh periods later."""
+        drive = CASE_ONE.drive
+        angle = drive.angular_pitch * (7 + 1 / 3)
+        first, second = model(pinion_angles=(0.0, angle), travel="with_disk").shapes
+        # The disk turns towards growing θ and the second pinion sits at -angle.
+        there = rotated(CASE_ONE, first, -angle)
+        np.testing.assert_allclose(second(0.2), there(0.2 + 1 / 3), atol=1e-10 * first.largest)
+
     def test_rotation_of_the_shape(self):
         shape = contact_shape(CASE_ONE.modes, ContactPath(CASE_ONE.drive))
         x, angle = np.linspace(0, 1, 9), 0.83
         centroid = ContactPath(CASE_ONE.drive).centroid(x)
-        expected = shape_vector(CASE_ONE, centroid.radius, centroid.angle + angle)
+        expected = shape_vector(CASE_ONE, centroid.radius, SHRINKING * centroid.angle + angle)
         np.testing.assert_allclose(
             rotated(CASE_ONE, shape, angle)(x), expected, atol=1e-10 * np.abs(expected).max()
         )
@@ -362,16 +415,20 @@ class TestTransverse:
         )
         np.testing.assert_allclose(np.sort(here), np.sort(there), rtol=1e-9)
 
-    def test_critical_thickness_ratio_of_25_teeth(self):
-        """0.0394 for μ = 0.8, τ = 1, ζ = 1e-5, printed as read from a plot: the last tongue to vanish."""
+    @pytest.mark.parametrize(
+        ("printed", "tip_speed_rpm"), [(0.0375, 181.0), (0.0394, 837.0)], ids=["0-300 rpm", "0-1000 rpm"]
+    )
+    def test_critical_thickness_ratio_of_25_teeth(self, printed, tip_speed_rpm):
+        """Printed for μ = 0.8, τ = 1, ζ = 1e-5, read from a plot: where the last tongue of the range vanishes."""
         drive = Drive(25, 125, 3.175e-3)
+        speeds = float(rad_per_s(1.0)) * np.arange(tip_speed_rpm - 8, tip_speed_rpm + 8, 0.25)
 
-        def growth(thickness_ratio, speed_rpm):
+        def largest_growth(thickness_ratio):
             transverse = model(0.8, 1e-5, 1.0, body=Body(drive, thickness_ratio))
-            return floquet.growth_rate(transverse.system(float(rad_per_s(speed_rpm))))
+            return max(floquet.growth_rate(transverse.system(float(speed))) for speed in speeds)
 
-        assert growth(0.0394, 836.61) > 0
-        assert all(growth(0.0396, speed_rpm) < 0 for speed_rpm in np.arange(836.0, 846.0, 0.5))
+        assert largest_growth(printed) > 0
+        assert largest_growth(printed + 2e-4) < 0
 
     @pytest.mark.parametrize(
         ("change", "error", "message"),
@@ -379,6 +436,7 @@ class TestTransverse:
             ({"body": CASE_ONE.drive}, TypeError, "body must be a Body"),
             ({"load": 1.0}, TypeError, "load must be a MeshLoad"),
             ({"rate": "convective"}, ValueError, "rate must be"),
+            ({"travel": "against"}, ValueError, "travel must be"),
             ({"contact_ratio": 0.9}, ValueError, "contact_ratio"),
             ({"contact_ratio": float("nan")}, ValueError, "contact_ratio"),
             ({"pinion_angles": ()}, ValueError, "pinion_angles"),
