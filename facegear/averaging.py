@@ -194,8 +194,9 @@ def _pair_intervals(block: ResonanceBlock) -> Iterator[Interval]:
     distance = float(block.signed_frequencies[0] - block.signed_frequencies[1])
     product = 16 * complex(block.coupling[0, 1] * block.coupling[1, 0])
     rounding = _ROUNDING * abs(distance)
-    # In the symbols of the derivation the first member, turning with −Λ, is the coordinate j.
-    f_j, f_k = (0.0 if abs(d) <= rounding else float(d) for d in -2 * np.diag(block.coupling).real)
+    # In the symbols of the derivation the first member, turning with −Λ, is the coordinate j. The mean system is
+    # stable, so that a negative damping can only be rounding.
+    f_j, f_k = (0.0 if d <= rounding else float(d) for d in -2 * np.diag(block.coupling).real)
     # Each of the two factors is known to about 1e-12 of the frequencies.
     known = 1e-9 + 1e-12 * float(np.abs(block.signed_frequencies).max()) / abs(product) ** 0.5
     real, imag = product.real, product.imag if abs(product.imag) > known * abs(product) else 0.0

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 
 from facegear import hsu
-from facegear.averaging import averaged_block, unstable_intervals
+from facegear.averaging import ResonanceBlock, averaged_block, unstable_intervals
 from facegear.modal import StandardForm, modal_expansion
 from facegear.periodic import PeriodicSystem
 from tests.independent.monodromy import fitted_order, floquet_growth
@@ -100,3 +100,24 @@ def test_one_undamped_mode_has_no_border_to_first_order():
     band = by_label(hsu.resonance_bands(system, order=1))["(1+2)/1"]
     assert (band.lower, band.upper) == (0.0, math.inf)
     assert band.growth(band.centre + np.array([-0.3, 0.3])).min() > 0
+
+
+@pytest.mark.parametrize("damping", [(0.0, 0.02), (0.02, 0.0)])
+@pytest.mark.parametrize("phase", [0.4, -0.4])
+def test_one_undamped_mode_with_a_complex_product_has_one_border(damping, phase):
+    coupling = 0.01 * np.exp(0.5j * phase) * np.array([[0, 1], [1, 0]]) - np.diag(damping) / 2
+    block = ResonanceBlock((0, 3), (1, 0), np.array([1.0, -2.2]), coupling, 2)
+    ((lower, upper, _),) = unstable_intervals(block, 3.2)
+    assert math.isinf(lower) != math.isinf(upper)
+    border = upper if math.isinf(lower) else lower
+    assert block.growth_rate(border) == pytest.approx(0, abs=1e-12)
+    inside = 1e-3 if math.isinf(upper) else -1e-3
+    assert block.growth_rate(border + inside) > 0 > block.growth_rate(border - inside)
+
+
+def test_undamped_pair_with_a_complex_product_grows_at_every_detuning():
+    coupling = 0.01 * np.exp(0.2j) * np.array([[0, 1], [1, 0]])
+    block = ResonanceBlock((0, 3), (1, 0), np.array([1.0, -2.2]), coupling, 2)
+    ((lower, upper, _),) = unstable_intervals(block, 3.2)
+    assert (lower, upper) == (-math.inf, math.inf)
+    assert block.growth_rate(np.linspace(3.0, 3.4, 101)).min() > 0

@@ -99,10 +99,9 @@ class Derivation:
 
     def steps(self) -> tuple[tuple[str, str, sp.Expr], ...]:
         """Return (equation number, what it is, equation) in the order of the derivation, to be printed."""
-        time_derivative = sp.Function("D_t")
         rows: list[tuple[str, str, sp.Expr]] = []
         for i, expression in self.right_hand_side.items():
-            acceleration = sp.Symbol(f"\\ddot q_{i} + omega_{i}^2 q_{i}")
+            acceleration = sp.Symbol(rf"{{\ddot q_{i} + \omega_{i}^2 q_{i}}}")
             rows.append(("2-16", f"equation of motion of coordinate {i}", sp.Eq(acceleration, expression)))
         for (i, j), amplitudes in self.harmonics.items():
             for index, expression in enumerate(amplitudes, start=1):
@@ -119,9 +118,9 @@ class Derivation:
             )
         for i, pair in self.averaged.items():
             for symbol, expression in zip((A[i], B[i]), pair, strict=True):
-                rows.append(("2-23", "averaged variation", sp.Eq(time_derivative(symbol), expression)))
+                rows.append(("2-23", "averaged variation", sp.Eq(_rate(symbol), expression)))
         vector = sp.Matrix(self.amplitudes)
-        derivatives = sp.Matrix([time_derivative(a) for a in self.amplitudes])
+        derivatives = sp.Matrix([_rate(a) for a in self.amplitudes])
         rows.append(("2-25", "complex amplitudes", sp.Eq(derivatives, self.complex_matrix * vector)))
         rows.append(("2-25", "autonomous matrix", self.autonomous_matrix))
         rows.append(("2-26", "characteristic equation", sp.Eq(self.characteristic, 0)))
@@ -130,6 +129,11 @@ class Derivation:
         rows.append((number, "β", sp.Eq(sp.Symbol("beta"), self.eta)))
         rows.append(("2-26", "growth rate", sp.Eq(sp.Symbol("sigma"), self.growth_rate)))
         return tuple(rows)
+
+
+def _rate(amplitude: sp.Symbol) -> sp.Symbol:
+    """Symbol printed as the amplitude with a dot."""
+    return sp.Symbol(rf"{{\dot {amplitude.name}}}")
 
 
 def _phase(base: sp.Symbol) -> sp.Symbol:
