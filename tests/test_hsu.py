@@ -97,17 +97,21 @@ def test_second_tongue_of_a_pure_cosine_is_there_but_not_of_first_order():
 
 
 def test_one_degree_of_freedom_with_varying_mass():
-    # Frozen rate: (1 + m φ²) q̈ + q = 0 with φ = 1 + ½ cos ωt; second harmonic of φ² drives s = 2 as well.
+    # Frozen rate: (1 + m φ²) q̈ + 2.25 q = 0 with φ = 1 + ½ cos ωt; second harmonic of φ² drives s = 2 as well.
     sizes = np.array([0.1, 0.05, 0.025])
     for label in ("(1+1)/1", "(1+1)/2"):
         errors = []
         for size in sizes:
             shape = wave(lambda p: 1 + 0.5 * np.cos(p))
-            system = PeriodicSystem([[1.0]], [[0.0]], [[1.0]], [ContactLoad(shape, mass=size)], 1.0)
+            system = PeriodicSystem([[1.0]], [[0.0]], [[2.25]], [ContactLoad(shape, mass=size)], 1.0)
             band = by_label(hsu.resonance_bands(system))[label]
 
             def matrices(phase, size=size):
-                return np.array([[1 + size * (1 + 0.5 * np.cos(phase)) ** 2]]), np.zeros((1, 1)), np.eye(1)
+                return (
+                    np.array([[1 + size * (1 + 0.5 * np.cos(phase)) ** 2]]),
+                    np.zeros((1, 1)),
+                    2.25 * np.eye(1),
+                )
 
             errors.append(abs(floquet_growth(matrices, band.peak) - band.growth_rate))
         assert fitted_order(sizes, errors) > 1.8
@@ -277,6 +281,26 @@ def test_band_speeds_of_a_disk_that_turns():
                 lambda v: floquet_growth(disk(v, size, damping)[0], 4 * v), band.centre, beyond, xtol=1e-7
             )
             assert border == pytest.approx(true, abs=3 * size**2)
+
+
+def test_combination_resonance_of_a_varying_mass():
+    # Natural frequencies well away from 1: λ² M, λ C and K have to be told apart.
+    mean = np.array([[4.0, 1.0], [1.0, 9.0]])
+    sizes = np.array([0.1, 0.05, 0.025])
+    errors = []
+    for size in sizes:
+
+        def phi(phase):
+            return np.stack([1 + 0.5 * np.cos(phase), 0.6 - 0.7 * np.sin(phase)], axis=-1)
+
+        system = PeriodicSystem(np.eye(2), np.zeros((2, 2)), mean, [ContactLoad(wave(phi), mass=size)], 1.0)
+        band = by_label(hsu.resonance_bands(system, order=1))["(1+2)/1"]
+
+        def matrices(phase, size=size):
+            return np.eye(2) + size * np.outer(phi(phase), phi(phase)), np.zeros((2, 2)), mean
+
+        errors.append(abs(floquet_growth(matrices, band.peak) - band.growth_rate))
+    assert fitted_order(sizes, errors) > 1.8
 
 
 def test_contact_that_is_made_and_lost_with_damping_through_the_arm():
