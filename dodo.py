@@ -44,8 +44,6 @@ NEEDS = {"90_ledger": CHAPTERS}
 # One thread a process: two notebooks share the machine, and threads slow small matrices down.
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
-PLAIN = {"NO_COLOR": "1"}
-
 
 def files(folder: str, pattern: str) -> list[Path]:
     """Return the files below a folder of the project that match a pattern."""
@@ -156,13 +154,16 @@ def build_pages() -> TaskFailed | None:
             command,
             stdout=messages,
             stderr=subprocess.STDOUT,
-            env=os.environ | ONE_THREAD | PLAIN,
+            env=os.environ | ONE_THREAD,
             check=False,
         )
+    # Jupyter Book colours what it writes, terminal or not.
+    report = re.sub(r"\x1b\[[\d;]*m", "", log.read_text(encoding="utf-8"))
+    log.write_text(report, encoding="utf-8")
     if done.returncode == 0:
         return None
     marks = ("WARNING:", "ERROR:", "CRITICAL:")
-    lines = [line for line in log.read_text(encoding="utf-8").splitlines() if any(m in line for m in marks)]
+    lines = [line for line in report.splitlines() if any(mark in line for mark in marks)]
     first = lines[0].replace(str(SOURCE) + os.sep, "") if lines else "jupyter-book stopped"
     return TaskFailed(f"{first} ({len(lines)} such lines in {log})")
 
