@@ -1,8 +1,8 @@
 """Made-up systems with the structure of the transverse (28 states) and of the torsional model (6 states).
 
 The disk: two nodal circles times nodal diameters 0 to 3 in cosine and sine, gyroscopic coupling, a slight
-viscous loss, and contact points that move over the disk along an analytic path with kinks at four instants. No gear geometry enters,
-so that the Floquet engine can be tested and timed without the chapters that build on it.
+viscous loss, and contact points that move over the disk along an analytic path with kinks at four instants. No
+gear geometry enters, so that the Floquet engine can be tested and timed without the chapters built on it.
 """
 
 from __future__ import annotations

@@ -1,0 +1,331 @@
+"""Time 200 × 200 stability maps against the dissertation's rule and general-purpose integrators.
+
+Run from the repository root: ``python -m benchmarks.bench_maps [--size 200] [--output build/benchmarks.json]``.
+All rows are measured in one run on one machine. The slow routes are timed on a sample of cells, spread over the map,
+and scaled to all of them; the table says how many.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import resource
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import scipy.linalg
+from joblib import Parallel, delayed
+from scipy.integrate import solve_ivp
+from threadpoolctl import threadpool_limits
+
+from benchmarks.synthetic_disk import (
+    CONTACT_DAMPING,
+    CONTACT_MASS,
+    CONTACT_STIFFNESS,
+    PINIONS,
+    Array,
+    contact_shape,
+    synthetic_disk,
+    synthetic_shafts,
+)
+from facegear.columns import column_spectral_radii, family_spectral_radii
+from facegear.floquet import AdaptiveMagnus, Stepwise, multipliers
+from facegear.parameters import rad_per_s
+from facegear.periodic import PeriodicSystem
+from facegear.piecewise import PiecewiseChebyshev
+from facegear.stepping import aligned_edges
+
+LOWEST_RPM, HIGHEST_RPM = 10.0, 1000.0
+TORSIONAL_RPM = (100.0, 1000.0)
+FACE_GEAR_TEETH_TORSIONAL = 107
+SAMPLE_ACCURACY = 1e-6
+SAMPLED_SPEEDS = 8
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the table."""
+
+    route: str
+    cores: int
+    seconds_per_map: float
+    processor_seconds: float
+    largest_error: float
+    cells_timed: int
+
+
+def radius(matrix: Array) -> float:
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
+
+
+def processor_name() -> str:
+    """Model name of the processor, as the operating system gives it."""
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.exists():
+        for line in cpuinfo.read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    return platform.processor() or platform.machine()
+
+
+def transverse_column(speed: float, values: Array, pinions: int, swept: str) -> Array:
+    """One column of a map of the synthetic disk: bearing stiffness, damping or contact mass swept."""
+    column = dict.fromkeys(("mass", "damping", "stiffness"), np.ones(values.size))
+    column[swept] = values
+    with threadpool_limits(1):
+        return column_spectral_radii(
+            synthetic_disk(speed, [_shape(i) for i in range(pinions)]),
+            CONTACT_MASS * column["mass"],
+            CONTACT_DAMPING * column["damping"],
+            CONTACT_STIFFNESS * column["stiffness"],
+        )
+
+
+@cache
+def _shape(pinion: int) -> PiecewiseChebyshev:
+    return contact_shape(*PINIONS[pinion])
+
+
+def torsional_column(speed: float, values: Array) -> Array:
+    """One column of a map of the synthetic shafts: input-shaft stiffness swept."""
+    period = 2.0 * np.pi / (FACE_GEAR_TEETH_TORSIONAL * speed)
+    with threadpool_limits(1):
+        return family_spectral_radii(lambda stiffness: synthetic_shafts(stiffness, period), values)
+
+
+def timed_map(column: Callable[[float], Array], speeds: Array, cores: int) -> tuple[Array, float, float]:
+    """Spectral radii of a whole map, wall time with the start of processes, processor time of this process."""
+    begin, used = time.perf_counter(), time.process_time()
+    if cores == 1:
+        columns = [column(speed) for speed in speeds]
+    else:
+        # Interleaved, so that the costly low speeds are shared out.
+        parts = Parallel(n_jobs=cores)(
+            delayed(_columns)(column, speeds[start::cores]) for start in range(cores)
+        )
+        columns = [parts[i % cores][i // cores] for i in range(speeds.size)]
+    return np.stack(columns, axis=1), time.perf_counter() - begin, time.process_time() - used
+
+
+def _columns(column: Callable[[float], Array], speeds: Array) -> list[Array]:
+    return [column(speed) for speed in speeds]
+
+
+def scipy_stepwise(system: PeriodicSystem, edges: Array) -> Array:
+    """Midpoint rule (2-11) with one batched scipy.linalg.expm."""
+    lengths = np.diff(edges) * system.period
+    factors = scipy.linalg.expm(
+        system.state_matrix(edges[:-1] + np.diff(edges) / 2.0) * lengths[:, None, None]
+    )
+    total = np.eye(2 * system.size)
+    for factor in factors:
+        total = factor @ total
+    return total
+
+
+def dissertation_rule(system: PeriodicSystem, sub_intervals: int) -> Array:
+    """Stepwise exponential (2-9 to 2-11) as the text describes it: one matrix, one exponential at a time."""
+    total = np.eye(2 * system.size)
+    step = system.period / sub_intervals
+    for p in range(sub_intervals):
+        total = scipy.linalg.expm(system.state_matrix((p + 0.5) / sub_intervals) * step) @ total
+    return total
+
+
+def dop853(system: PeriodicSystem) -> Array:
+    """Transition matrix by scipy.integrate.solve_ivp, DOP853, rtol 1e-8, from kink to kink."""
+    n = 2 * system.size
+    y = np.eye(n).ravel()
+    edges = np.append(system.breakpoints, 1.0) * system.period
+
+    def rhs(t: float, y: Array) -> Array:
+        return (system.state_matrix(t / system.period) @ y.reshape(n, n)).ravel()
+
+    for a, b in pairwise(edges):
+        y = solve_ivp(rhs, (a, b), y, method="DOP853", rtol=1e-8, atol=1e-11).y[:, -1]
+    return y.reshape(n, n)
+
+
+def sampled_row(route: str, cells: list[tuple[PeriodicSystem, float]], run, total: int) -> Row:
+    """Time `run(system, exact)` -> (matrix, seconds) on sample cells and scale to `total` cells."""
+    seconds, errors = [], []
+    for system, exact in cells:
+        matrix, spent = run(system, exact)
+        seconds.append(spent)
+        errors.append(float(abs(radius(matrix) - exact)))
+    return Row(route, 1, float(np.mean(seconds)) * total, max(errors), len(cells))
+
+
+def coarsest(build: Callable[[int], Array], exact: float) -> int:
+    """Smallest number of sub-intervals 32, 48, 64, 96, ... that meets the sample accuracy (search not timed)."""
+    count, step = 32, 16
+    while abs(radius(build(count)) - exact) > SAMPLE_ACCURACY:
+        count += step
+        if count & (count - 1) == 0:
+            step = count // 2
+        if count > 2**16:
+            raise ArithmeticError(f"{count} sub-intervals do not reach {SAMPLE_ACCURACY:.0e}")
+    return count
+
+
+def clocked(function: Callable[[], Array]) -> tuple[Array, float]:
+    begin = time.perf_counter()
+    result = function()
+    return result, time.perf_counter() - begin
+
+
+def run_stepwise(system: PeriodicSystem, exact: float) -> tuple[Array, float]:
+    # The search uses the package's own exponentials, the timed run scipy's.
+    def fast(count: int) -> Array:
+        return Stepwise(count).scaled_transition_matrices([system])[0]
+
+    count = coarsest(fast, exact)
+    return clocked(lambda: dissertation_rule(system, count))
+
+
+def run_batched(system: PeriodicSystem, exact: float) -> tuple[Array, float]:
+    count = coarsest(lambda q: scipy_stepwise(system, aligned_edges(system.breakpoints, q)), exact)
+    return clocked(lambda: scipy_stepwise(system, aligned_edges(system.breakpoints, count)))
+
+
+def run_dop853(system: PeriodicSystem, exact: float) -> tuple[Array, float]:
+    del exact
+    return clocked(lambda: dop853(system))
+
+
+def errors_of_map(
+    chart: Array, speeds: Array, build: Callable[[float, int], PeriodicSystem]
+) -> tuple[float, int]:
+    """Largest error of a map at sampled cells against the adaptive Magnus route at 1e-12."""
+    errors = []
+    for i in np.linspace(0, speeds.size - 1, SAMPLED_SPEEDS).astype(int):
+        row = (7 * i + 3) % chart.shape[0]
+        exact = abs(multipliers(build(float(speeds[i]), row), AdaptiveMagnus(1e-12))[0])
+        errors.append(abs(chart[row, i] - exact))
+    return float(max(errors)), len(errors)
+
+
+def measure(size: int) -> list[Row]:
+    """All rows of the table for maps of `size` × `size` cells."""
+    speeds = rad_per_s(np.linspace(LOWEST_RPM, HIGHEST_RPM, size))
+    values = np.linspace(0.0, 1.0, size)
+    rows = []
+    for pinions, swept in ((1, "stiffness"), (1, "damping"), (1, "mass"), (2, "stiffness")):
+        for cores in (1, 2):
+            chart, seconds = timed_map(_Transverse(values, pinions, swept), speeds, cores)
+
+            def build(speed: float, row: int, pinions: int = pinions, swept: str = swept) -> PeriodicSystem:
+                system = synthetic_disk(speed, [_shape(i) for i in range(pinions)])
+                full = {"mass": CONTACT_MASS, "damping": CONTACT_DAMPING, "stiffness": CONTACT_STIFFNESS}
+                return system.replace_loads(**{swept: full[swept] * values[row]})
+
+            error, checked = errors_of_map(chart, speeds, build)
+            name = f"collocation, 28 states, {pinions} load{'s'[: pinions - 1]}, {swept}"
+            rows.append(Row(name, cores, seconds, error, chart.size))
+            print(rows[-1], f"errors at {checked} cells", file=sys.stderr, flush=True)
+
+    torsional_speeds = rad_per_s(np.linspace(*TORSIONAL_RPM, size))
+    stiffnesses = np.linspace(1e4, 6e5, size)
+    for cores in (1, 2):
+        chart, seconds = timed_map(_Torsional(stiffnesses), torsional_speeds, cores)
+
+        def build_shafts(speed: float, row: int) -> PeriodicSystem:
+            return synthetic_shafts(stiffnesses[row], 2.0 * np.pi / (FACE_GEAR_TEETH_TORSIONAL * speed))
+
+        error, _ = errors_of_map(chart, torsional_speeds, build_shafts)
+        rows.append(Row("Magnus, 6 states, shaft stiffness", cores, seconds, error, chart.size))
+        print(rows[-1], file=sys.stderr, flush=True)
+
+    cells = []
+    for i in np.linspace(0, size - 1, SAMPLED_SPEEDS).astype(int):
+        system = synthetic_disk(float(speeds[i]), [_shape(0)]).replace_loads(
+            stiffness=CONTACT_STIFFNESS * values[(7 * i + 3) % size]
+        )
+        cells.append((system, abs(multipliers(system, AdaptiveMagnus(1e-12))[0])))
+    total = size * size
+    for name, run in (
+        ("dissertation's rule, scipy expm one by one, to 1e-6", run_stepwise),
+        ("aligned midpoint rule, scipy expm batched, to 1e-6", run_batched),
+        ("solve_ivp DOP853, rtol 1e-8", run_dop853),
+    ):
+        rows.append(sampled_row(name, cells, run, total))
+        print(rows[-1], file=sys.stderr, flush=True)
+    return rows
+
+
+@dataclass(frozen=True)
+class _Transverse:
+    values: Array
+    pinions: int
+    swept: str
+
+    def __call__(self, speed: float) -> Array:
+        return transverse_column(speed, self.values, self.pinions, self.swept)
+
+
+@dataclass(frozen=True)
+class _Torsional:
+    values: Array
+
+    def __call__(self, speed: float) -> Array:
+        return torsional_column(speed, self.values)
+
+
+def table(rows: list[Row], size: int) -> str:
+    """Text of the table, times as ratios to the first row."""
+    first = rows[0].seconds_per_map
+    lines = [
+        f"{size} x {size} map, {LOWEST_RPM:.0f} to {HIGHEST_RPM:.0f} rpm (torsional from {TORSIONAL_RPM[0]:.0f}); "
+        f"{processor_name()}, {os.cpu_count()} cores, one BLAS thread a process",
+        f"{'route':<54}{'cores':>6}{'seconds':>10}{'ratio':>8}{'error':>10}{'cells timed':>13}",
+    ]
+    for row in rows:
+        lines.append(
+            f"{row.route:<54}{row.cores:>6}{row.seconds_per_map:>10.2f}{row.seconds_per_map / first:>8.1f}"
+            f"{row.largest_error:>10.0e}{row.cells_timed:>13}"
+        )
+    return "\n".join(lines)
+
+
+def peak_memory() -> float:
+    """Largest resident size of this process or one of its children [MB]."""
+    unit = 1e6 if sys.platform == "darwin" else 1e3
+    return (
+        max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+        / unit
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--size", type=int, default=200, help="cells along each axis")
+    parser.add_argument("--output", type=Path, default=Path("build/benchmarks.json"))
+    arguments = parser.parse_args()
+    with threadpool_limits(1):
+        rows = measure(arguments.size)
+    memory = peak_memory()
+    print(table(rows, arguments.size))
+    print(f"peak memory of one process: {memory:.0f} MB")
+    arguments.output.parent.mkdir(parents=True, exist_ok=True)
+    record = {
+        "processor": processor_name(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "size": arguments.size,
+        "peak_memory_mb": memory,
+        "rows": [asdict(row) for row in rows],
+    }
+    arguments.output.write_text(json.dumps(record, indent=2) + "\n")
+
+
+if __name__ == "__main__":
+    main()
