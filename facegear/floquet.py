@@ -32,8 +32,8 @@ ComplexArray = NDArray[np.complex128]
 class Method(Protocol):
     """A way to compute the Floquet transition matrix."""
 
-    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
-        """Φ of systems with common size and breakpoints, in scaled coordinates, (V, 2n, 2n)."""
+    def scaled_transition_matrices(self, family: Family) -> Array:
+        """S Φ S⁻¹ of each system of a family, in its scaled coordinates, shape (V, 2n, 2n)."""
         ...
 
     def refined(self) -> Method:
@@ -58,14 +58,13 @@ class Stepwise:
     def __post_init__(self) -> None:
         integer_at_least("sub_intervals", self.sub_intervals, 1)
 
-    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`; refuses the velocity kicks of a contact mass with total rate."""
-        if any(system.impulses() for system in systems):
+        if any(family.kicks):
             raise ValueError(
                 "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
                 "which equal sub-intervals cannot place; use AlignedStepwise, Magnus or Collocation"
             )
-        family = Family(systems)
         edges = np.linspace(0.0, 1.0, self.sub_intervals + 1)
         return family.product(edges, midpoint)
 
@@ -89,9 +88,8 @@ class AlignedStepwise:
     def __post_init__(self) -> None:
         integer_at_least("sub_intervals", self.sub_intervals, 1)
 
-    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
-        family = Family(systems)
         return family.product(aligned_edges(family.breakpoints, self.sub_intervals), midpoint)
 
     def refined(self) -> Method:
@@ -117,9 +115,8 @@ class Magnus:
     def __post_init__(self) -> None:
         integer_at_least("sub_intervals", self.sub_intervals, 1)
 
-    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
-        family = Family(systems)
         return family.product(aligned_edges(family.breakpoints, self.sub_intervals), gauss_magnus)
 
     def refined(self) -> Method:
@@ -147,9 +144,8 @@ class AdaptiveMagnus:
     def __post_init__(self) -> None:
         within("tolerance", self.tolerance, 1e-13, 1e-2)
 
-    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
-        family = Family(systems)
         start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
         factor = 1
         row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
@@ -201,11 +197,12 @@ class Collocation:
         # Beyond 14 rad the kernel of a heavily damped mode loses its digits.
         within("panel_angle", self.panel_angle, 0.1, 14.0)
 
-    def scaled_transition_matrices(self, systems: Sequence[PeriodicSystem]) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
-        scale = Family(systems).scale
-        matrices = [collocation.transition_matrix(system, self.nodes, self.panel_angle) for system in systems]
-        return np.asarray(scale @ np.stack(matrices) @ np.linalg.inv(scale), dtype=float)
+        matrices = [
+            collocation.transition_matrix(system, self.nodes, self.panel_angle) for system in family.systems
+        ]
+        return np.asarray(family.scale @ np.stack(matrices) @ family.inverse_scale, dtype=float)
 
     def refined(self) -> Method:
         """Half as many nodes again and shorter panels."""
@@ -256,9 +253,9 @@ def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None
         If sizes, numbers of loads or breakpoints differ.
     """
     chosen = AdaptiveMagnus() if method is None else method
-    scaled = chosen.scaled_transition_matrices(systems)
-    scale = Family(systems).scale
-    return np.asarray(np.linalg.solve(scale, scaled @ scale), dtype=float)
+    family = Family(systems)
+    scaled = chosen.scaled_transition_matrices(family)
+    return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
 
 
 def multipliers(system: PeriodicSystem, method: Method | None = None) -> ComplexArray:
@@ -269,7 +266,7 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
     array of complex, shape (2n,)
     """
     chosen = default_method(system) if method is None else method
-    values = _eigenvalues(chosen.scaled_transition_matrices([system]))[0]
+    values = _eigenvalues(chosen.scaled_transition_matrices(Family([system])))[0]
     return np.asarray(values[np.argsort(-np.abs(values), kind="stable")], dtype=complex)
 
 
@@ -285,7 +282,7 @@ def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = No
     As :func:`transition_matrices`, without turning back to the state (q, q̇).
     """
     chosen = AdaptiveMagnus() if method is None else method
-    values = _eigenvalues(chosen.scaled_transition_matrices(systems))
+    values = _eigenvalues(chosen.scaled_transition_matrices(Family(systems)))
     return np.asarray(np.abs(values).max(axis=-1), dtype=float)
 
 
@@ -301,8 +298,9 @@ def error_estimate(system: PeriodicSystem, method: Method) -> float:
     float
         In the units of a multiplier [-]; at least the rounding error of Φ.
     """
-    coarse = _eigenvalues(method.scaled_transition_matrices([system]))[0]
-    scaled = method.refined().scaled_transition_matrices([system])
+    family = Family([system])
+    coarse = _eigenvalues(method.scaled_transition_matrices(family))[0]
+    scaled = method.refined().scaled_transition_matrices(family)
     fine = _eigenvalues(scaled)[0]
     floor = 8.0 * np.finfo(float).eps * 2.0 * system.size * float(np.linalg.norm(scaled[0], 2))
     distance = np.abs(coarse[:, None] - fine[None, :])

@@ -73,26 +73,6 @@ def exponentials(matrices: Array) -> Array:
     return np.asarray(result, dtype=float)
 
 
-def frequency_scale(system: PeriodicSystem) -> float:
-    """Return the fastest frequency [rad/s] of the undamped system frozen in the middle of each smooth piece."""
-    middle = system.breakpoints + np.diff(np.append(system.breakpoints, 1.0)) / 2.0
-    stiffness = np.linalg.solve(system.mass_matrix(middle), system.stiffness_matrix(middle))
-    fastest = float(np.sqrt(np.abs(np.linalg.eigvals(stiffness)).max()))
-    return fastest if fastest > 0.0 else 1.0 / system.period
-
-
-def state_scaling(system: PeriodicSystem) -> Array:
-    """S of the state S X = (ω Lᵀq, Lᵀq̇), M = L Lᵀ: both halves have the size of a root energy, as q and q̇ do not.
-
-    Returns
-    -------
-    array, shape (2n, 2n)
-    """
-    factor = np.linalg.cholesky(system.mass).T
-    zero = np.zeros_like(factor)
-    return np.block([[frequency_scale(system) * factor, zero], [zero, factor]])
-
-
 class Family:
     """Systems with common size and breakpoints, stacked for batched linear algebra, in scaled coordinates.
 
@@ -100,6 +80,11 @@ class Family:
     ----------
     systems : sequence of PeriodicSystem
         V systems; periods, constant matrices and loads may differ.
+
+    Attributes
+    ----------
+    scale : array, shape (2n, 2n)
+        S of the scaled state S X, one for the family, so that matrices can be interpolated from member to member.
 
     Raises
     ------
@@ -123,19 +108,26 @@ class Family:
         self.size = first.size
         self.breakpoints = first.breakpoints
         self.periods = np.array([system.period for system in systems])
-        # One scaling for the family, so that its matrices can be interpolated from member to member.
-        self.scale = state_scaling(systems[len(systems) // 2])
-        self.inverse_scale = np.linalg.inv(self.scale)
         self.kicks = [dict(system.velocity_kicks()) for system in systems]
         self.mass, self.damping, self.stiffness = (
             np.stack([getattr(system, name) for system in systems])[:, None]
             for name in ("mass", "damping", "stiffness")
         )
 
+        middle = self.breakpoints + np.diff(np.append(self.breakpoints, 1.0)) / 2.0
+        assembled_mass, _, assembled_stiffness = self.assembled(middle)
+        squares = np.linalg.eigvals(np.linalg.solve(assembled_mass, assembled_stiffness))
+        frequencies = np.sqrt(np.abs(squares).max(axis=(1, 2)))
+        # Fastest undamped motion of each system frozen in the middle of its smooth pieces [rad/s].
+        self.frequencies = np.where(frequencies > 0.0, frequencies, 1.0 / self.periods)
+        chosen = len(systems) // 2
+        self.scale = _scaling(systems[chosen].mass, float(self.frequencies[chosen]))
+        self.inverse_scale = np.linalg.inv(self.scale)
+
     @property
     def fastest_angle(self) -> float:
         """Largest ω T0 of the family [rad]."""
-        return max(frequency_scale(system) * system.period for system in self.systems)
+        return float((self.frequencies * self.periods).max())
 
     def assembled(self, fraction: Array) -> tuple[Array, Array, Array]:
         """M(t), C(t), K(t) at fractions (m,), each of shape (V, m, n, n) or with an axis of length 1."""
@@ -207,6 +199,13 @@ class Family:
                     jump[n:, :n] = kick
                     jump = self.scale @ jump @ self.inverse_scale
                     steps[number, place] = steps[number, place] @ jump
+
+
+def _scaling(mass: Array, frequency: float) -> Array:
+    """S of the state S X = (ω Lᵀq, Lᵀq̇), M = L Lᵀ: both halves have the size of a root energy, as q and q̇ do not."""
+    factor = np.linalg.cholesky(mass).T
+    zero = np.zeros_like(factor)
+    return np.block([[frequency * factor, zero], [zero, factor]])
 
 
 def _values(
