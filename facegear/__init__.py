@@ -26,6 +26,20 @@ _PUBLIC = {
     "mesh_period": "kinematics",
     "PhaseSplit": "kinematics",
     "phase_split": "kinematics",
+    # plate, transverse
+    "Body": "plate",
+    "Transverse": "transverse",
+    # periodic, floquet
+    "ContactLoad": "periodic",
+    "PeriodicSystem": "periodic",
+    "error_estimate": "floquet",
+    "growth_rate": "floquet",
+    "multipliers": "floquet",
+    "transition_matrix": "floquet",
+    # hsu
+    "ResonanceBand": "hsu",
+    "band_speeds": "hsu",
+    "resonance_bands": "hsu",
 }
 
 __all__ = sorted(_PUBLIC)

@@ -6,7 +6,8 @@ been in mesh for frac(x) + j periods, if that is not more than cr. Nothing here 
 
 The contact ratio is an argument: Tregold's `drive.contact_ratio`, the default and the dissertation's choice,
 compresses the whole sweep of the contact line into Tregold's shorter mesh time, rotation included;
-`drive.geometric_contact_ratio` lets the pinion turn as fast as the sweep needs.
+`drive.geometric_contact_ratio` lets the pinion turn as fast as the sweep needs. The travel around the gear's axis is
+compressed with it: the contact runs around with the gear (section 3.7), which turns by cr angular pitches meanwhile.
 
 Positions are smooth on the pieces between breakpoints. `..._on_piece` evaluates one piece up to and including
 both its ends, each as the limit from inside, so that a fit on Chebyshev nodes is not spoilt by the neighbour.
@@ -157,6 +158,11 @@ class ContactPath:
         """P = ceil(cr), the greatest number of tooth pairs in mesh at once."""
         return _pairs_in_mesh(self.contact_ratio)
 
+    @property
+    def angular_travel(self) -> float:
+        """Travel about the gear's axis over that of the true sweep: cr over the geometric contact ratio."""
+        return self.contact_ratio / self.drive.geometric_contact_ratio
+
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions of T0 in [0, 1), ascending from 0, between which the positions are smooth.
@@ -195,7 +201,8 @@ class ContactPath:
             raise ValueError(f"fraction must lie in [0, 1] of the pair's mesh time, got {bad!r}")
         rotation = self.drive.entry_rotation * (1.0 - own) + self.drive.exit_rotation * own
         lines = self.drive.contact_lines(rotation)
-        return PairStates(np.ones(own.shape, dtype=bool), lines.radius, lines.angle, lines.length)
+        angle = self.angular_travel * lines.angle
+        return PairStates(np.ones(own.shape, dtype=bool), lines.radius, angle, lines.length)
 
     def pair_states(self, x: ArrayLike) -> PairStates:
         """Contact points of all pairs at times x [mesh periods], any real numbers of shape S."""

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from facegear import flanks
 from facegear.geometry import Drive
 from facegear.kinematics import ContactPath, PairStates, SkewLine
-from facegear.parameters import integer_at_least
+from facegear.parameters import FloatArray, integer_at_least
 from facegear.reference import variable
 from facegear.symbolic import meshing
 
@@ -124,6 +124,8 @@ def contact_point_positions(
 def contact_centroid_instants(drive: Drive, contact_ratio: float, instants: Sequence[float]) -> xr.Dataset:
     """Contact lines, contact points and centroid on the gear plane at chosen instants (Figs 3.10, 3.11).
 
+    Where they truly lie on the tooth: the travel about the gear's axis is not compressed with the contact ratio.
+
     Parameters
     ----------
     drive : Drive
@@ -139,33 +141,40 @@ def contact_centroid_instants(drive: Drive, contact_ratio: float, instants: Sequ
         ``point_radial``, ``length`` [m], NaN for a pair not in mesh; over instant: ``centroid_across``,
         ``centroid_radial`` [m].
     """
-    path = ContactPath(drive, contact_ratio)
     time = np.asarray(instants, dtype=float)
-    states = _pairs(path.pair_states(time))
-    centroid = path.centroid(time)
-    fraction = (time + np.arange(path.pairs)[:, None]) / contact_ratio
-    rotation = drive.entry_rotation * (1.0 - fraction) + drive.exit_rotation * fraction
+    pairs = np.arange(int(np.ceil(contact_ratio)))
+    fraction = (time[:, None] + pairs) / contact_ratio
     in_mesh = fraction <= 1.0
-    lines = np.full((*fraction.shape, 33, 3), np.nan)
-    lines[in_mesh] = drive.contact_lines(rotation[in_mesh]).fixed_points()
-    lines = lines.swapaxes(0, 1)
-    across, radial = np.sin(states["angle"]) * states["radius"], np.cos(states["angle"]) * states["radius"]
+    contact = drive.contact_lines(
+        drive.entry_rotation * (1.0 - fraction[in_mesh]) + drive.exit_rotation * fraction[in_mesh]
+    )
+
+    def spread(values: FloatArray) -> FloatArray:
+        """Values of the pairs in mesh over (instant, pair), NaN elsewhere."""
+        array = np.full((*fraction.shape, *values.shape[1:]), np.nan)
+        array[in_mesh] = values
+        return array
+
+    lines, length = spread(contact.fixed_points()), spread(contact.length)
+    radius, angle = spread(contact.radius), spread(contact.angle)
+    weight = np.nan_to_num(length) / np.nansum(length, axis=1, keepdims=True)
+    mean_radius, mean_angle = (np.sum(weight * np.nan_to_num(each), axis=1) for each in (radius, angle))
     both = ("instant", "pair")
     return xr.Dataset(
         {
             "line_across": _length((*both, "point"), lines[..., 0], "Contact line, across"),
             "line_radial": _length((*both, "point"), -lines[..., 1], "Contact line, radial"),
-            "point_across": _length(both, across.T, "Contact point, across"),
-            "point_radial": _length(both, radial.T, "Contact point, radial"),
-            "length": _length(both, states["length"].T, "Length of the contact line"),
+            "point_across": _length(both, np.sin(angle) * radius, "Contact point, across"),
+            "point_radial": _length(both, np.cos(angle) * radius, "Contact point, radial"),
+            "length": _length(both, length, "Length of the contact line"),
             "centroid_across": _length(
-                "instant", np.sin(centroid.angle) * centroid.radius, "Contact centroid, across"
+                "instant", np.sin(mean_angle) * mean_radius, "Contact centroid, across"
             ),
             "centroid_radial": _length(
-                "instant", np.cos(centroid.angle) * centroid.radius, "Contact centroid, radial"
+                "instant", np.cos(mean_angle) * mean_radius, "Contact centroid, radial"
             ),
         },
-        coords={"instant": time, "pair": np.arange(1, path.pairs + 1)},
+        coords={"instant": time, "pair": pairs + 1},
         attrs={"parameters": describe(drive, contact_ratio=contact_ratio)},
     )
 

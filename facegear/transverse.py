@@ -220,15 +220,14 @@ def contact_centroid(path: ContactPath) -> PiecewiseChebyshev:
     Returns
     -------
     PiecewiseChebyshev
-        r_c over the outer radius [-] and θ_c [rad], the angle shrunk by contact ratio over geometric one.
+        r_c over the outer radius [-] and θ_c [rad].
     """
     edges = np.append(path.breakpoints, 1.0)
-    shrinking = path.contact_ratio / path.drive.geometric_contact_ratio
 
     def position(fraction: FloatArray, piece: int) -> FloatArray:
         start, end = edges[piece], edges[piece + 1]
         centroid = path.centroid_on_piece(piece, (2 * fraction - start - end) / (end - start))
-        return np.stack([centroid.radius / path.drive.outer_radius, shrinking * centroid.angle], axis=-1)
+        return np.stack([centroid.radius / path.drive.outer_radius, centroid.angle], axis=-1)
 
     return PiecewiseChebyshev.fit(position, path.breakpoints)
 

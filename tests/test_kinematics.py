@@ -111,7 +111,7 @@ def test_centroid_is_the_weighted_mean_of_3_21(path):
             if own <= 1.0:
                 phi = drive.entry_rotation + own * (drive.exit_rotation - drive.entry_rotation)
                 line = drive.contact_lines(phi)
-                top += line.length * np.array([line.radius, line.angle])
+                top += line.length * np.array([line.radius, path.angular_travel * line.angle])
                 bottom += line.length
         np.testing.assert_allclose(path.centroid(x), top / bottom, rtol=0, atol=1e-13)
 

@@ -34,8 +34,6 @@ from tests.independent.complex_galerkin import ComplexDisk, Pinion
 from tests.independent.complex_galerkin import multipliers as complex_multipliers
 
 CASE_ONE = Body(Drive(26, 130, 3.175e-3), 0.03)
-# Tregold's clock compresses time and rotation alike.
-SHRINKING = CASE_ONE.drive.contact_ratio / CASE_ONE.drive.geometric_contact_ratio
 
 
 @cache
@@ -206,7 +204,6 @@ def complex_pinions(transverse: Transverse) -> list[Pinion]:
     """Centroids of the pinions by (5-1) to (5-4), straight from the contact path."""
     drive = transverse.body.drive
     path = ContactPath(drive, transverse.contact_ratio)
-    shrinking = transverse.contact_ratio / drive.geometric_contact_ratio
     sense = {"printed": 1, "with_disk": -1}[transverse.travel]
     pinions = []
     for angle in transverse.pinion_angles:
@@ -214,7 +211,7 @@ def complex_pinions(transverse: Transverse) -> list[Pinion]:
 
         def position(x, angle=angle, phase=phase):
             centroid = path.centroid(x + phase)
-            return centroid.radius, sense * (shrinking * centroid.angle + angle)
+            return centroid.radius, sense * (centroid.angle + angle)
 
         pinions.append(Pinion(position, [(instant - phase) % 1.0 for instant in path.breakpoints]))
     return pinions
@@ -327,7 +324,7 @@ class TestTransverse:
         transverse = model(0.6)
         system = transverse.system(1e-9)
         centroid = ContactPath(CASE_ONE.drive).centroid(0.4)
-        shape = shape_vector(CASE_ONE, centroid.radius, SHRINKING * centroid.angle)
+        shape = shape_vector(CASE_ONE, centroid.radius, centroid.angle)
         areal = 2 * np.pi * 7840 * CASE_ONE.thickness
         under_load = areal / (shape @ np.linalg.solve(system.stiffness_matrix(0.4), shape))
         alone = disk_stiffness(CASE_ONE, 0.0, float(centroid.radius))
@@ -341,7 +338,7 @@ class TestTransverse:
         phase = phase_split(CASE_ONE.drive, angle).phase
         x = np.linspace(0, 1, 57)
         centroid = ContactPath(CASE_ONE.drive).centroid(x + phase)
-        expected = shape_vector(CASE_ONE, centroid.radius, SHRINKING * centroid.angle + angle)
+        expected = shape_vector(CASE_ONE, centroid.radius, centroid.angle + angle)
         np.testing.assert_allclose(second(x), expected, atol=1e-10 * np.abs(expected).max())
         assert np.abs(first(x) - second(x)).max() > 1e-3 * np.abs(expected).max()
 
@@ -358,7 +355,7 @@ class TestTransverse:
         drive = CASE_ONE.drive
         ratio = getattr(drive, clock)
         path = ContactPath(drive, ratio)
-        angle = path.contact_point([0.0, 1.0]).angle * ratio / drive.geometric_contact_ratio
+        angle = path.contact_point([0.0, 1.0]).angle
         assert -1.0 < (angle[1] - angle[0]) / (drive.angular_pitch * ratio) < -0.9
         if clock == "contact_ratio":
             x = np.array([0.75, 0.95])
@@ -396,7 +393,7 @@ class TestTransverse:
         shape = contact_shape(CASE_ONE.modes, ContactPath(CASE_ONE.drive))
         x, angle = np.linspace(0, 1, 9), 0.83
         centroid = ContactPath(CASE_ONE.drive).centroid(x)
-        expected = shape_vector(CASE_ONE, centroid.radius, SHRINKING * centroid.angle + angle)
+        expected = shape_vector(CASE_ONE, centroid.radius, centroid.angle + angle)
         np.testing.assert_allclose(
             rotated(CASE_ONE, shape, angle)(x), expected, atol=1e-10 * np.abs(expected).max()
         )

@@ -3,6 +3,7 @@
 Takes some minutes; nothing here imports facegear.
 """
 
+import sys
 from pathlib import Path
 
 import yaml
@@ -57,12 +58,17 @@ def tooth():
                 yield anchor("line", end[axis], LENGTH, fraction=share, point=point, axis=axis)
 
 
+def travel(contact_ratio):
+    """Travel about the gear's axis over that of the true sweep, when the gear turns by this many pitches meanwhile."""
+    return mpf(contact_ratio) / independent.geometric_contact_ratio(CASE_1)
+
+
 def positions():
     # Age of the pair in mesh periods over the contact ratio 1.5 is its share of the sweep.
     for pair, time in ((1, "0.45"), (1, "0.9"), (1, "1.35"), (2, "1.35"), (3, "2.7"), (4, "3.6")):
         _, _, radius, angle = line_at((mpf(time) - pair + 1) / mpf("1.5"))
         yield anchor("radius", radius, LENGTH, pair=pair, time=time)
-        yield anchor("angle", angle, ANGLE, pair=pair, time=time)
+        yield anchor("angle", angle * travel("1.5"), ANGLE, pair=pair, time=time)
 
 
 def instants():
@@ -82,7 +88,7 @@ def motion():
         radius, angle = independent.contact_centroid(CASE_1, time, "1.5")
         for shift in (0, 1):
             yield anchor("centroid_radius", radius, LENGTH, time=mpf(time) + shift)
-            yield anchor("centroid_angle", angle, ANGLE, time=mpf(time) + shift)
+            yield anchor("centroid_angle", angle * travel("1.5"), ANGLE, time=mpf(time) + shift)
 
 
 def total_length(contact_ratio):
@@ -153,9 +159,11 @@ FIGURES = {
 
 
 def main():
+    """Make the anchors of the figures named on the command line, of all when none is."""
+    chosen = sys.argv[1:] or list(FIGURES)
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for name, make in tqdm(FIGURES.items()):
-        content = {"route": ROUTE, "anchors": list(make())}
+    for name in tqdm(chosen):
+        content = {"route": ROUTE, "anchors": list(FIGURES[name]())}
         text = yaml.safe_dump(content, sort_keys=False, width=110)
         (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
 
