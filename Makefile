@@ -45,7 +45,7 @@ format: environment ## put code and notebooks into their committed form
 	$(PYTHON) -m nbstripout --keep-id --extra-keys '$(STRIPPED)' notebooks/*.ipynb
 
 bench: environment ## measure the performance table
-	@$(PYTHON) -m benchmarks
+	@for file in benchmarks/bench_*.py; do $(PYTHON) -m benchmarks.$$(basename $$file .py) || exit 1; done
 
 references: environment ## make the stored arrays anew and say what moved: make references [NAME=03_geometry_and_meshing]
 	@$(PYTHON) tools/update_references.py $(NAME)
