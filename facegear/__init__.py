@@ -26,6 +26,9 @@ _PUBLIC = {
     "mesh_period": "kinematics",
     "PhaseSplit": "kinematics",
     "phase_split": "kinematics",
+    # models and maps
+    "replace_parameter": "models",
+    "stability_map": "maps",
     # plate, transverse
     "Body": "plate",
     "Transverse": "transverse",

@@ -1,0 +1,479 @@
+"""Two-parameter stability maps: growth rates over speed and one swept parameter.
+
+A map is made of columns, one a speed. Where only the mass, damping or stiffness of the contacts changes along a
+column, its transition matrices share nearly all their work (:func:`facegear.columns.column_spectral_radii`).
+Where other matrices change, they are interpolated along the parameter as far as they are smooth, and computed
+cell by cell where they are not. Columns are shared out in chunks over processes by joblib.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.collocation import is_suitable
+from facegear.columns import TOLERANCE, column_spectral_radii, interpolate
+from facegear.floquet import (
+    AdaptiveMagnus,
+    Collocation,
+    Method,
+    default_method,
+    multipliers,
+    transition_matrices,
+)
+from facegear.models import Model, is_whole_number, parameter_path, replace_parameter
+from facegear.parameters import finite_array, rpm
+from facegear.periodic import PeriodicSystem
+from facegear.piecewise import Array, PiecewiseChebyshev
+from facegear.stepping import Family
+
+if TYPE_CHECKING:
+    import xarray
+
+# Columns of a map that are computed, and kept on disk, together.
+_CHUNK = 8
+# Largest difference of spectral radii between a column interpolated along its parameter and a cell computed alone.
+_INTERPOLATION_CHECK = 1e-8
+
+
+def stability_map(
+    model: Model,
+    speeds: ArrayLike,
+    parameter: str,
+    values: ArrayLike,
+    *,
+    method: Method | None = None,
+    jobs: int | None = None,
+    progress: bool | None = None,
+    cache_directory: str | os.PathLike[str] | None = None,
+) -> xarray.DataArray:
+    """Growth rates of a model over speed and one of its parameters.
+
+    Parameters
+    ----------
+    model : Model
+        A dataclass with a method ``system(speed)``, such as :class:`facegear.transverse.Transverse`.
+    speeds : array_like, shape (S,)
+        Speeds [rad/s], greater than 0, ascending.
+    parameter : str
+        Name of the swept parameter: a field of the model or of one of its parts ("stiffness" of its load,
+        "thickness_ratio" of its body), see :func:`facegear.models.parameter_path`.
+    values : array_like, shape (V,)
+        Values of the parameter, in the unit of its field.
+    method : Method, optional
+        Method of :mod:`facegear.floquet`. If left out, contact-force collocation where the free motion allows it,
+        else adaptive Magnus.
+    jobs : int, optional
+        Number of processes, as joblib's ``n_jobs``. If left out, what ``joblib.parallel_config`` says, or else all
+        processors. Each process uses one thread.
+    progress : bool, optional
+        Show a progress bar; if left out, only on a terminal.
+    cache_directory : path, optional
+        Where finished chunks of columns are kept. The same call continues from there after an interruption; a
+        file that is damaged or belongs to another map is computed anew.
+
+    Returns
+    -------
+    xarray.DataArray, shape (V, S)
+        ln(max|α|)/T0 [1/s] (2-8), unstable where positive; dimensions named after the parameter and "speed".
+        Attribute ``error_estimate`` is the largest difference of max|α| from a more accurate method in the corner
+        cells and the middle one.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument: speeds not ascending or not positive, values not finite, empty axes, an unknown
+        parameter, or what the model itself refuses.
+
+    Examples
+    --------
+    >>> from facegear.parameters import MeshLoad, rad_per_s
+    >>> from facegear.transverse import Body, Drive, Transverse
+    >>> model = Transverse(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0))
+    >>> chart = stability_map(model, rad_per_s([300.0, 600.0]), "stiffness", [0.5, 1.0], jobs=1)
+    >>> chart.dims
+    ('stiffness', 'speed')
+    """
+    speeds = checked_speeds(speeds)
+    values = _checked_values(values)
+    name = parameter_path(model, parameter)[-1]
+    sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
+    chunks = _chunks(sweep, speeds)
+    radii = np.empty((values.size, speeds.size))
+    for number, result in _computed(chunks, jobs, progress, cache_directory):
+        radii[:, number * _CHUNK : number * _CHUNK + result.shape[1]] = result
+    periods = np.concatenate([chunk.periods for chunk in chunks])
+    error = _error_estimate(sweep, speeds, radii)
+
+    import xarray
+
+    return xarray.DataArray(
+        np.log(radii) / periods,
+        dims=(name, "speed"),
+        coords={
+            name: (name, values, {"long_name": ".".join(parameter_path(model, parameter))}),
+            "speed": ("speed", speeds, {"units": "rad/s", "long_name": "speed"}),
+            "speed_rpm": ("speed", rpm(speeds), {"units": "rpm", "long_name": "speed"}),
+        },
+        name="growth_rate",
+        attrs={
+            "units": "1/s",
+            "long_name": "growth rate ln(max|α|)/T0",
+            "model": repr(model),
+            "method": sweep.description,
+            "error_estimate": error,
+            "error_estimate_of": "spectral radius max|α| [-], corner cells and middle cell",
+            "facegear_version": version("facegear"),
+        },
+    )
+
+
+def checked_speeds(speeds: ArrayLike) -> Array:
+    """Check that speeds [rad/s] are finite, positive and ascending, and return them as an array of shape (S,).
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming what is wrong.
+    """
+    array = finite_array("speeds", speeds, "rad/s")
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"speeds must list at least one speed in rad/s, got shape {array.shape}")
+    if array.min() <= 0.0:
+        raise ValueError(f"speeds must be greater than 0 rad/s, got {array.min()!r}")
+    if (np.diff(array) <= 0.0).any():
+        raise ValueError("speeds must ascend strictly, got equal or descending neighbours")
+    return array
+
+
+def _checked_values(values: ArrayLike) -> Array:
+    array = finite_array("values", values)
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"values must list at least one value of the parameter, got shape {array.shape}")
+    if np.unique(array).size < array.size:
+        raise ValueError("values must differ from one another, got a repeated value")
+    return array
+
+
+@dataclass(frozen=True)
+class _Sweep:
+    """A model and the values of one of its parameters."""
+
+    model: Model
+    parameter: str
+    values: tuple[float, ...]
+    method: Method | None
+
+    def model_at(self, value: float) -> Any:
+        """Return the model with the parameter replaced."""
+        return replace_parameter(self.model, self.parameter, value)
+
+    @cached_property
+    def models(self) -> tuple[Model, ...]:
+        """One model a value."""
+        return tuple(self.model_at(value) for value in self.values)
+
+    @cached_property
+    def probes(self) -> tuple[int, ...]:
+        """Numbers of the first, the middle and the last value."""
+        return tuple(sorted({0, len(self.values) // 2, len(self.values) - 1}))
+
+    def load_parameters(self, systems: Sequence[PeriodicSystem]) -> Array | None:
+        """Mass, damping and stiffness of each contact, (V, 3, loads), if the systems differ in nothing else."""
+        if not all(_same_but_load_parameters(systems[0], other) for other in systems[1:]):
+            return None
+        return np.array([_load_parameters(system) for system in systems])
+
+    @property
+    def description(self) -> str:
+        """Method in words."""
+        chosen = "default method" if self.method is None else repr(self.method)
+        return f"{chosen}, transition matrices interpolated along {self.parameter} where they are smooth"
+
+
+def _load_parameters(system: PeriodicSystem) -> list[list[float]]:
+    return [[getattr(load, name) for load in system.loads] for name in ("mass", "damping", "stiffness")]
+
+
+def _same_function(one: PiecewiseChebyshev | None, other: PiecewiseChebyshev | None) -> bool:
+    if one is None or other is None or one is other:
+        return one is other
+    return np.array_equal(one.breakpoints, other.breakpoints) and np.array_equal(
+        one.coefficients, other.coefficients
+    )
+
+
+def _same_but_load_parameters(one: PeriodicSystem, other: PeriodicSystem) -> bool:
+    """Whether two systems differ at most in the mass, damping and stiffness of their loads."""
+    return (
+        one.period == other.period
+        and len(one.loads) == len(other.loads)
+        and all(np.array_equal(getattr(one, m), getattr(other, m)) for m in ("mass", "damping", "stiffness"))
+        and all(
+            a.rate == b.rate and _same_function(a.weight, b.weight) and _same_function(a.shape, b.shape)
+            for a, b in zip(one.loads, other.loads, strict=True)
+        )
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _LoadChunk:
+    """Columns along which only load parameters change: systems of each speed, parameters (V, 3, loads)."""
+
+    systems: tuple[PeriodicSystem, ...]
+    loads: Array
+    method: Method | None
+
+    @property
+    def periods(self) -> Array:
+        return np.array([system.period for system in self.systems])
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on."""
+        yield from (repr(self.method), self.loads)
+        for system in self.systems:
+            yield from _content(system)
+
+    def radii(self) -> Array:
+        """Spectral radii, shape (V, speeds)."""
+        masses, dampings, stiffnesses = self.loads.transpose(1, 0, 2)
+        columns = [
+            column_spectral_radii(system, masses, dampings, stiffnesses, self.method)
+            for system in self.systems
+        ]
+        return np.stack(columns, axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class _ModelChunk:
+    """Columns along which anything may change."""
+
+    sweep: _Sweep
+    speeds: Array
+    periods: Array
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on: of the model's code, what it makes of the first, middle and last value."""
+        sweep = self.sweep
+        yield from (
+            repr(sweep.method),
+            repr(sweep.model),
+            sweep.parameter,
+            np.array(sweep.values),
+            self.speeds,
+        )
+        for speed in self.speeds:
+            for probe in sweep.probes:
+                yield from _content(sweep.models[probe].system(float(speed)))
+
+    def radii(self) -> Array:
+        """Spectral radii, shape (V, speeds)."""
+        return np.stack([_model_column(self.sweep, float(speed)) for speed in self.speeds], axis=1)
+
+
+_Chunk = _LoadChunk | _ModelChunk
+
+
+def _chunks(sweep: _Sweep, speeds: Array) -> list[_Chunk]:
+    """Prepare neighbouring columns for the fastest route that suits them.
+
+    Load parameters are read from all values at the first speed; at the others the first, middle and last value
+    show whether they, or anything else, depend on both speed and value.
+    """
+    loads = sweep.load_parameters([model.system(float(speeds[0])) for model in sweep.models])
+    chunks: list[_Chunk] = []
+    for start in range(0, speeds.size, _CHUNK):
+        part = speeds[start : start + _CHUNK]
+        if loads is not None:
+            probed = [[sweep.models[probe].system(float(speed)) for probe in sweep.probes] for speed in part]
+            expected = loads[list(sweep.probes)]
+            if all(np.array_equal(_or_empty(sweep.load_parameters(row)), expected) for row in probed):
+                chunks.append(_LoadChunk(tuple(row[0] for row in probed), loads, sweep.method))
+                continue
+        periods = np.array([sweep.models[0].system(float(speed)).period for speed in part])
+        # A fresh copy: models that have been built need not travel to other processes.
+        chunks.append(_ModelChunk(replace(sweep), part, periods))
+    return chunks
+
+
+def _or_empty(loads: Array | None) -> Array:
+    return np.empty(0) if loads is None else loads
+
+
+def _model_column(sweep: _Sweep, speed: float) -> Array:
+    """Spectral radii along one column, shape (V,)."""
+    values = np.array(sweep.values)
+    systems = [sweep.models[probe].system(speed) for probe in sweep.probes]
+    alone = values.size <= len(sweep.probes) or is_whole_number(sweep.model, sweep.parameter)
+    if alone or any(not _same_layout(systems[0], other) for other in systems[1:]):
+        return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
+    method = sweep.method
+    if method is None:
+        method = Collocation() if all(is_suitable(system) for system in systems) else AdaptiveMagnus()
+    # Coordinates in which entries are of comparable size, the same for the whole column.
+    scale = Family(systems[:1]).scale
+
+    def evaluate(chosen: Array) -> Array:
+        matrices = transition_matrices([sweep.model_at(v).system(speed) for v in chosen.tolist()], method)
+        return np.asarray(scale @ matrices @ np.linalg.inv(scale), dtype=float)
+
+    radii = np.abs(np.linalg.eigvals(interpolate(evaluate, values, TOLERANCE))).max(axis=-1)
+    # Smooth to the samples is not yet smooth: one cell between them tells.
+    witness = int(0.382 * values.size)
+    if (
+        abs(radii[witness] - _spectral_radius(sweep.models[witness].system(speed), method))
+        > _INTERPOLATION_CHECK
+    ):
+        return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
+    return np.asarray(radii, dtype=float)
+
+
+def _same_layout(one: PeriodicSystem, other: PeriodicSystem) -> bool:
+    return (
+        one.size == other.size
+        and len(one.loads) == len(other.loads)
+        and np.array_equal(one.breakpoints, other.breakpoints)
+    )
+
+
+def _spectral_radius(system: PeriodicSystem, method: Method | None) -> float:
+    return float(np.abs(multipliers(system, method)[0]))
+
+
+def _error_estimate(sweep: _Sweep, speeds: Array, radii: Array) -> float:
+    """Largest difference of max|α| from a more accurate method, corner cells and middle cell."""
+    last_value, last_speed = radii.shape[0] - 1, radii.shape[1] - 1
+    cells = {(v, s) for v in (0, last_value) for s in (0, last_speed)} | {(last_value // 2, last_speed // 2)}
+    worst = 0.0
+    for v, s in sorted(cells):
+        system = sweep.models[v].system(float(speeds[s]))
+        judge = (sweep.method or default_method(system)).refined()
+        worst = max(worst, abs(_spectral_radius(system, judge) - float(radii[v, s])))
+    return worst
+
+
+def _content(system: PeriodicSystem) -> Iterator[Any]:
+    """Everything a system is made of."""
+    yield from (system.mass, system.damping, system.stiffness, system.period)
+    for load in system.loads:
+        yield from (load.mass, load.damping, load.stiffness, load.rate)
+        for function in (load.shape, load.weight):
+            if function is None:
+                yield None
+            else:
+                yield from (function.breakpoints, function.coefficients)
+
+
+def _computed(
+    chunks: Sequence[_Chunk],
+    jobs: int | None,
+    progress: bool | None,
+    cache_directory: str | os.PathLike[str] | None,
+) -> Iterator[tuple[int, Array]]:
+    """Results of all chunks with their numbers, in the order in which they are there."""
+    from tqdm.auto import tqdm
+
+    store = None if cache_directory is None else _Store(Path(cache_directory))
+    waiting = []
+    with tqdm(
+        total=len(chunks), desc="stability map", disable=None if progress is None else not progress
+    ) as bar:
+        for number, chunk in enumerate(chunks):
+            kept = None if store is None else store.load(chunk)
+            if kept is None:
+                waiting.append(number)
+            else:
+                bar.update()
+                yield number, kept
+        for number, result in _in_parallel(
+            ((number, chunks[number]) for number in waiting), len(waiting), jobs
+        ):
+            if store is not None:
+                store.save(chunks[number], result)
+            bar.update()
+            yield number, result
+
+
+def _in_parallel(
+    tasks: Iterable[tuple[int, _Chunk]], count: int, jobs: int | None
+) -> Iterator[tuple[int, Array]]:
+    from joblib import Parallel, delayed, effective_n_jobs
+    from joblib.parallel import get_active_backend
+
+    if (
+        jobs is None
+        and type(get_active_backend()[0]).__name__ == "LokyBackend"
+        and effective_n_jobs(None) == 1
+    ):
+        jobs = -1
+    if count <= 1:
+        yield from (_run(*task) for task in tasks)
+        return
+    backend = get_active_backend()[0]
+    kind = "generator_unordered" if backend.supports_return_generator else "list"
+    yield from Parallel(n_jobs=jobs, return_as=kind, batch_size=1)(delayed(_run)(*task) for task in tasks)
+
+
+def _run(number: int, chunk: _Chunk) -> tuple[int, Array]:
+    """One chunk on one thread: the matrices are too small to share."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1):
+        return number, chunk.radii()
+
+
+@dataclass(frozen=True)
+class _Store:
+    """Finished chunks on disk, one file each, named by a digest of everything they depend on."""
+
+    directory: Path
+
+    def __post_init__(self) -> None:
+        self.directory.mkdir(parents=True, exist_ok=True)
+
+    def _key(self, chunk: _Chunk) -> str:
+        digest = hashlib.sha256(f"facegear {version('facegear')} {type(chunk).__name__}".encode())
+        for part in chunk.content():
+            if isinstance(part, np.ndarray):
+                digest.update(f"|{part.shape}{part.dtype}".encode() + np.ascontiguousarray(part).tobytes())
+            else:
+                digest.update(f"|{part!r}".encode())
+        return digest.hexdigest()
+
+    def load(self, chunk: _Chunk) -> Array | None:
+        """Return a result that is there and undamaged, else None."""
+        path = self.directory / f"{self._key(chunk)}.npz"
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                radii, digest = file["radii"], str(file["digest"])
+        # A damaged archive fails in many ways (zipfile, zlib, numpy); all of them mean: compute again.
+        except Exception:
+            return None
+        if radii.dtype != np.float64 or digest != _digest(radii):
+            return None
+        return np.asarray(radii, dtype=float)
+
+    def save(self, chunk: _Chunk, radii: Array) -> None:
+        """Write under another name first: a file with the right name is complete."""
+        handle, temporary = tempfile.mkstemp(dir=self.directory, suffix=".part")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                np.savez(file, radii=radii, digest=_digest(radii))
+            os.replace(temporary, self.directory / f"{self._key(chunk)}.npz")
+        except BaseException:
+            os.unlink(temporary)
+            raise
+
+
+def _digest(radii: Array) -> str:
+    return hashlib.sha256(f"{radii.shape}".encode() + np.ascontiguousarray(radii).tobytes()).hexdigest()
