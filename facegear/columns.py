@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.collocation import FreeMotion, LoadColumn, UnsuitableSystemError
+from facegear.collocation import FreeMotion, UnsuitableSystemError
 from facegear.floquet import AdaptiveMagnus, Method, transition_matrices
 from facegear.parameters import finite_array
-from facegear.periodic import PeriodicSystem
+from facegear.periodic import LoadColumn, PeriodicSystem
 from facegear.piecewise import Array
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.

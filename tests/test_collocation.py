@@ -23,10 +23,10 @@ from benchmarks.synthetic_disk import (
     synthetic_disk,
     synthetic_shafts,
 )
-from facegear.collocation import FreeModes, LoadColumn, UnsuitableSystemError, chain, transition_matrix
+from facegear.collocation import FreeModes, UnsuitableSystemError, chain, transition_matrix
 from facegear.columns import column_spectral_radii, family_spectral_radii, interpolate
 from facegear.floquet import AdaptiveMagnus, Collocation, multipliers, spectral_radii
-from facegear.periodic import PeriodicSystem
+from facegear.periodic import LoadColumn, PeriodicSystem
 
 RPM = np.pi / 30.0
 
