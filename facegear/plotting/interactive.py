@@ -36,7 +36,7 @@ class TurningView:
 
     figure: go.Figure
     alt: str
-    height: int = 480
+    height: int = 400
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         specification = self.figure.to_json()
@@ -64,7 +64,7 @@ def turning_view(pinion: Mesh, gear: Mesh, alt: str) -> TurningView:
     -------
     TurningView
     """
-    light = {"ambient": 0.5, "diffuse": 0.8, "specular": 0.25, "roughness": 0.6}
+    light = {"ambient": 0.75, "diffuse": 0.7, "specular": 0.2, "roughness": 0.6}
 
     def body(mesh: Mesh, colour: str, name: str) -> go.Mesh3d:
         # A tenth of a millimetre is finer than a pixel, and a shorter number a smaller page.
@@ -84,7 +84,7 @@ def turning_view(pinion: Mesh, gear: Mesh, alt: str) -> TurningView:
             hoverinfo="name",
         )
 
-    figure = go.Figure([body(gear, "#9FB0BE", "face gear"), body(pinion, SKY, "pinion")])
+    figure = go.Figure([body(gear, "#C3CFD8", "face gear"), body(pinion, SKY, "pinion")])
     axis = {"visible": False}
     figure.update_layout(
         margin={"l": 0, "r": 0, "t": 0, "b": 0},
@@ -94,7 +94,7 @@ def turning_view(pinion: Mesh, gear: Mesh, alt: str) -> TurningView:
             "yaxis": axis,
             "zaxis": axis,
             "aspectmode": "data",
-            "camera": {"eye": {"x": 0.9, "y": -1.5, "z": 0.9}, "center": {"x": 0.0, "y": -0.1, "z": -0.1}},
+            "camera": {"eye": {"x": 0.8, "y": -1.3, "z": 0.85}, "center": {"x": 0.0, "y": -0.05, "z": -0.1}},
         },
     )
     return TurningView(figure, alt)

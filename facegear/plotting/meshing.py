@@ -33,6 +33,8 @@ _SWEEP = mpl.colormaps["cividis"]
 def _axes_3d(figure: Figure, position: Any = 111) -> Axes3D:
     axes: Axes3D = figure.add_subplot(position, projection="3d")
     axes.set_facecolor("none")
+    # Otherwise the nearer half of a surface hides the lines drawn on it.
+    axes.computed_zorder = False
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.pane.set_visible(False)
         axis._axinfo["grid"].update(linewidth=0.4, color=FAINT)
@@ -51,9 +53,10 @@ def _draw_tooth(axes: Axes3D, tooth: xr.Dataset) -> None:
             alpha=0.55,
             linewidth=0,
             shade=True,
+            zorder=1,
         )
         for edge in (points[:, 0], points[:, -1], points[0], points[-1]):
-            axes.plot(edge[:, 0], -edge[:, 1], edge[:, 2], color=GREY, linewidth=0.7)
+            axes.plot(edge[:, 0], -edge[:, 1], edge[:, 2], color=GREY, linewidth=0.7, zorder=2)
     axes.set_xlabel("across tooth [mm]")
     axes.set_ylabel("radial [mm]", labelpad=12)
     axes.set_zlabel("axial [mm]")
@@ -65,7 +68,7 @@ def _draw_lines(axes: Axes3D, tooth: xr.Dataset) -> None:
     count = tooth.sizes["fraction"]
     for k in range(count):
         line = tooth["line"].isel(fraction=k).values * _MM
-        axes.plot(line[:, 0], -line[:, 1], line[:, 2], color=_SWEEP(k / (count - 1)), linewidth=1.6)
+        axes.plot(line[:, 0], -line[:, 1], line[:, 2], color=_SWEEP(k / (count - 1)), linewidth=1.6, zorder=3)
 
 
 @styled
@@ -77,8 +80,8 @@ def tooth_and_contact_lines(tooth: xr.Dataset) -> Figure:
     tooth : xarray.Dataset
         ``surface`` (flank, along, across, axis) and ``line`` (fraction, point, axis) in the gear's frame [m].
     """
-    figure = Figure(figsize=(WIDTH, 4.6))
-    figure.subplots_adjust(left=0.08, right=0.95, bottom=0.04, top=1.05)
+    figure = Figure(figsize=(WIDTH, 3.9))
+    figure.subplots_adjust(left=0.06, right=0.95, bottom=-0.02, top=1.2)
     axes = _axes_3d(figure)
     _draw_tooth(axes, tooth)
     _draw_lines(axes, tooth)
@@ -101,7 +104,7 @@ def contact_points(tooth: xr.Dataset) -> Figure:
     tooth : xarray.Dataset
         As for :func:`tooth_and_contact_lines`, with ``midpoint`` (fraction, axis) [m].
     """
-    figure = Figure(figsize=(WIDTH, 7.0))
+    figure = Figure(figsize=(WIDTH, 6.6))
     grid = figure.add_gridspec(
         2, 1, height_ratios=(1.6, 1), left=0.12, right=0.95, bottom=0.09, top=1.02, hspace=0.1
     )

@@ -82,8 +82,8 @@ def generation(pinion: Mesh, gear: Mesh) -> Figure:
     pinion, gear : Mesh
         Both in the space-fixed frame [m].
     """
-    figure = Figure(figsize=(WIDTH, 4.4))
-    axes: Any = figure.add_axes((-0.12, -0.16, 1.24, 1.42), projection="3d")
+    figure = Figure(figsize=(WIDTH, 3.6))
+    axes: Any = figure.add_axes((-0.12, -0.42, 1.24, 1.84), projection="3d")
     light = LightSource(azdeg=300, altdeg=45)
     # One collection for both bodies, so that they hide each other where they should.
     triangles = np.vstack([body.vertices[body.triangles] for body in (gear, pinion)]) * _MM
