@@ -8,14 +8,11 @@ cell by cell where they are not. Columns are shared out in chunks over processes
 
 from __future__ import annotations
 
-import hashlib
 import os
-import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,6 +29,7 @@ from facegear.floquet import (
     transition_matrices,
 )
 from facegear.models import Model, is_whole_number, parameter_path, replace_parameter
+from facegear.parallel import computed
 from facegear.parameters import finite_array, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
@@ -53,7 +51,7 @@ def stability_map(
     values: ArrayLike,
     *,
     method: Method | None = None,
-    jobs: int | None = None,
+    jobs: int = -1,
     progress: bool | None = None,
     cache_directory: str | os.PathLike[str] | None = None,
 ) -> xarray.DataArray:
@@ -73,9 +71,9 @@ def stability_map(
     method : Method, optional
         Method of :mod:`facegear.floquet`. If left out, contact-force collocation where the free motion allows it,
         else adaptive Magnus.
-    jobs : int, optional
-        Number of processes, as joblib's ``n_jobs``. If left out, what ``joblib.parallel_config`` says, or else all
-        processors. Each process uses one thread.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors, or all workers of the backend that
+        ``joblib.parallel_config`` names. Each process uses one thread.
     progress : bool, optional
         Show a progress bar; if left out, only on a terminal.
     cache_directory : path, optional
@@ -110,7 +108,7 @@ def stability_map(
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
     chunks = _chunks(sweep, speeds)
     radii = np.empty((values.size, speeds.size))
-    for number, result in _computed(chunks, jobs, progress, cache_directory):
+    for number, result in computed(chunks, "stability map", jobs, progress, cache_directory):
         radii[:, number * _CHUNK : number * _CHUNK + result.shape[1]] = result
     periods = np.concatenate([chunk.periods for chunk in chunks])
     error = _error_estimate(sweep, speeds, radii)
@@ -244,7 +242,7 @@ class _LoadChunk:
         for system in self.systems:
             yield from _content(system)
 
-    def radii(self) -> Array:
+    def compute(self) -> Array:
         """Spectral radii, shape (V, speeds)."""
         masses, dampings, stiffnesses = self.loads.transpose(1, 0, 2)
         columns = [
@@ -276,7 +274,7 @@ class _ModelChunk:
             for probe in sweep.probes:
                 yield from _content(sweep.models[probe].system(float(speed)))
 
-    def radii(self) -> Array:
+    def compute(self) -> Array:
         """Spectral radii, shape (V, speeds)."""
         return np.stack([_model_column(self.sweep, float(speed)) for speed in self.speeds], axis=1)
 
@@ -372,108 +370,3 @@ def _content(system: PeriodicSystem) -> Iterator[Any]:
                 yield None
             else:
                 yield from (function.breakpoints, function.coefficients)
-
-
-def _computed(
-    chunks: Sequence[_Chunk],
-    jobs: int | None,
-    progress: bool | None,
-    cache_directory: str | os.PathLike[str] | None,
-) -> Iterator[tuple[int, Array]]:
-    """Results of all chunks with their numbers, in the order in which they are there."""
-    from tqdm.auto import tqdm
-
-    store = None if cache_directory is None else _Store(Path(cache_directory))
-    waiting = []
-    with tqdm(
-        total=len(chunks), desc="stability map", disable=None if progress is None else not progress
-    ) as bar:
-        for number, chunk in enumerate(chunks):
-            kept = None if store is None else store.load(chunk)
-            if kept is None:
-                waiting.append(number)
-            else:
-                bar.update()
-                yield number, kept
-        for number, result in _in_parallel(
-            ((number, chunks[number]) for number in waiting), len(waiting), jobs
-        ):
-            if store is not None:
-                store.save(chunks[number], result)
-            bar.update()
-            yield number, result
-
-
-def _in_parallel(
-    tasks: Iterable[tuple[int, _Chunk]], count: int, jobs: int | None
-) -> Iterator[tuple[int, Array]]:
-    from joblib import Parallel, delayed, effective_n_jobs
-    from joblib.parallel import get_active_backend
-
-    if (
-        jobs is None
-        and type(get_active_backend()[0]).__name__ == "LokyBackend"
-        and effective_n_jobs(None) == 1
-    ):
-        jobs = -1
-    if count <= 1:
-        yield from (_run(*task) for task in tasks)
-        return
-    backend = get_active_backend()[0]
-    kind = "generator_unordered" if backend.supports_return_generator else "list"
-    yield from Parallel(n_jobs=jobs, return_as=kind, batch_size=1)(delayed(_run)(*task) for task in tasks)
-
-
-def _run(number: int, chunk: _Chunk) -> tuple[int, Array]:
-    """One chunk on one thread: the matrices are too small to share."""
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(limits=1):
-        return number, chunk.radii()
-
-
-@dataclass(frozen=True)
-class _Store:
-    """Finished chunks on disk, one file each, named by a digest of everything they depend on."""
-
-    directory: Path
-
-    def __post_init__(self) -> None:
-        self.directory.mkdir(parents=True, exist_ok=True)
-
-    def _key(self, chunk: _Chunk) -> str:
-        digest = hashlib.sha256(f"facegear {version('facegear')} {type(chunk).__name__}".encode())
-        for part in chunk.content():
-            if isinstance(part, np.ndarray):
-                digest.update(f"|{part.shape}{part.dtype}".encode() + np.ascontiguousarray(part).tobytes())
-            else:
-                digest.update(f"|{part!r}".encode())
-        return digest.hexdigest()
-
-    def load(self, chunk: _Chunk) -> Array | None:
-        """Return a result that is there and undamaged, else None."""
-        path = self.directory / f"{self._key(chunk)}.npz"
-        try:
-            with np.load(path, allow_pickle=False) as file:
-                radii, digest = file["radii"], str(file["digest"])
-        # A damaged archive fails in many ways (zipfile, zlib, numpy); all of them mean: compute again.
-        except Exception:
-            return None
-        if radii.dtype != np.float64 or digest != _digest(radii):
-            return None
-        return np.asarray(radii, dtype=float)
-
-    def save(self, chunk: _Chunk, radii: Array) -> None:
-        """Write under another name first: a file with the right name is complete."""
-        handle, temporary = tempfile.mkstemp(dir=self.directory, suffix=".part")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                np.savez(file, radii=radii, digest=_digest(radii))
-            os.replace(temporary, self.directory / f"{self._key(chunk)}.npz")
-        except BaseException:
-            os.unlink(temporary)
-            raise
-
-
-def _digest(radii: Array) -> str:
-    return hashlib.sha256(f"{radii.shape}".encode() + np.ascontiguousarray(radii).tobytes()).hexdigest()

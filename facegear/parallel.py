@@ -1,0 +1,153 @@
+"""Independent tasks shared out over processes, with results kept on disk.
+
+joblib runs them: by default in its own processes, or wherever ``joblib.parallel_config`` says, a Dask cluster for
+example.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from facegear.piecewise import Array
+
+
+class Task(Protocol):
+    """A piece of work with an array as its result."""
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on: arrays, numbers and text."""
+        ...
+
+    def compute(self) -> Array:
+        """Return the result."""
+        ...
+
+
+def computed(
+    tasks: Sequence[Task],
+    description: str,
+    jobs: int,
+    progress: bool | None,
+    cache_directory: str | os.PathLike[str] | None,
+) -> Iterator[tuple[int, Array]]:
+    """Results of all tasks with their numbers, in the order in which they are there.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+    description : str
+        For the progress bar.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors or workers.
+    progress : bool, optional
+        Show a progress bar; if None, only on a terminal.
+    cache_directory : path, optional
+        Where results are kept, each written as soon as it is there, under a name that is a digest of all it depends
+        on. A file that is damaged is not used.
+
+    Yields
+    ------
+    int, array
+        Number of the task and its result.
+    """
+    from tqdm.auto import tqdm
+
+    store = None if cache_directory is None else _Store(Path(cache_directory))
+    waiting = []
+    with tqdm(total=len(tasks), desc=description, disable=None if progress is None else not progress) as bar:
+        for number, task in enumerate(tasks):
+            kept = None if store is None else store.load(task)
+            if kept is None:
+                waiting.append(number)
+            else:
+                bar.update()
+                yield number, kept
+        for number, result in _in_parallel([(number, tasks[number]) for number in waiting], jobs):
+            if store is not None:
+                store.save(tasks[number], result)
+            bar.update()
+            yield number, result
+
+
+def _in_parallel(tasks: Sequence[tuple[int, Task]], jobs: int) -> Iterator[tuple[int, Array]]:
+    """Run tasks where joblib says; a single one is not worth another process."""
+    from joblib import Parallel, delayed, effective_n_jobs
+    from joblib.parallel import get_active_backend
+
+    if len(tasks) == 1:
+        yield _run(*tasks[0])
+    elif get_active_backend()[0].supports_return_generator:
+        work = (delayed(_run)(*task) for task in tasks)
+        yield from Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)(work)
+    else:
+        # Such a backend answers when all is done: give it rounds, so that an interruption loses one only.
+        size = 4 * effective_n_jobs(jobs)
+        for start in range(0, len(tasks), size):
+            yield from Parallel(n_jobs=jobs, batch_size=1)(
+                delayed(_run)(*task) for task in tasks[start : start + size]
+            )
+
+
+def _run(number: int, task: Task) -> tuple[int, Array]:
+    """One task on one thread: the matrices are too small to share."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1):
+        return number, task.compute()
+
+
+@dataclass(frozen=True)
+class _Store:
+    """Finished tasks on disk, one file each, named by a digest of everything they depend on."""
+
+    directory: Path
+
+    def __post_init__(self) -> None:
+        self.directory.mkdir(parents=True, exist_ok=True)
+
+    def _key(self, task: Task) -> str:
+        digest = hashlib.sha256(f"facegear {version('facegear')} {type(task).__name__}".encode())
+        for part in task.content():
+            if isinstance(part, np.ndarray):
+                digest.update(f"|{part.shape}{part.dtype}".encode() + np.ascontiguousarray(part).tobytes())
+            else:
+                digest.update(f"|{part!r}".encode())
+        return digest.hexdigest()
+
+    def load(self, task: Task) -> Array | None:
+        """Return a result that is there and undamaged, else None."""
+        path = self.directory / f"{self._key(task)}.npz"
+        try:
+            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
+                result, digest = file["result"], str(file["digest"])
+        # A damaged archive fails in many ways (zipfile, zlib, numpy); all of them mean: compute again.
+        except Exception:
+            return None
+        if result.dtype != np.float64 or digest != _digest(result):
+            return None
+        return np.asarray(result, dtype=float)
+
+    def save(self, task: Task, result: Array) -> None:
+        """Write under another name first: a file with the right name is complete."""
+        handle, temporary = tempfile.mkstemp(dir=self.directory, suffix=".part")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                np.savez(file, result=result, digest=_digest(result))
+            os.replace(temporary, self.directory / f"{self._key(task)}.npz")
+        except BaseException:
+            os.unlink(temporary)
+            raise
+
+
+def _digest(result: Array) -> str:
+    return hashlib.sha256(f"{result.shape}".encode() + np.ascontiguousarray(result).tobytes()).hexdigest()
