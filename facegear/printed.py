@@ -1,14 +1,15 @@
 """The numbers and statements printed in the dissertation, and the verdict on each.
 
-``data/printed/chNN.yaml`` holds what the text prints: where, what, the digits as printed, the unit, and the status
-that the compendium claims. A chapter computes the same quantities and hands them to :func:`ledger`, which works the
-status out from the numbers and refuses to go on if it is not the one claimed.
+``data/printed/chNN.yaml`` (or ``chNN_topic.yaml``) holds what the text prints: where, what, the digits as printed,
+the unit, and the status that the compendium claims. A chapter computes the same quantities and hands them to
+:func:`ledger`, which works the status out from the numbers and refuses to go on if it is not the one claimed.
 """
 
 from __future__ import annotations
 
 import math
 import os
+import re
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -208,12 +209,12 @@ def as_markdown(rows: Sequence[LedgerRow]) -> str:
     return "\n".join(lines)
 
 
-def counts_as_markdown(chapters: Mapping[str, Sequence[LedgerRow]]) -> str:
-    """How many rows of each chapter have each status, as a Markdown table; keys are file names like ``ch03``."""
+def counts_as_markdown(chapters: Mapping[int, Sequence[LedgerRow]]) -> str:
+    """How many rows of each chapter have each status, as a Markdown table; keys are the numbers of chapters."""
     lines = [f"| chapter | {' | '.join(STATUSES)} | all |", "|---" * (len(STATUSES) + 2) + "|"]
-    for name, rows in chapters.items():
+    for number, rows in chapters.items():
         counts = [sum(row.status == status for row in rows) for status in STATUSES]
-        lines.append(f"| {int(name[2:])} | {' | '.join(map(str, counts))} | {len(rows)} |")
+        lines.append(f"| {number} | {' | '.join(map(str, counts))} | {len(rows)} |")
     return "\n".join(lines)
 
 
@@ -257,6 +258,38 @@ def load_ledger(path: str | Path) -> tuple[LedgerRow, ...]:
     entries = yaml.safe_load(path.read_text(encoding="utf-8"))
     computed = {entry["id"]: entry.pop("computed") for entry in entries}
     return ledger(tuple(_printed_value(path.name, entry) for entry in entries), computed)
+
+
+def load_chapters(printed_folder: str | Path, ledger_folder: str | Path) -> dict[int, tuple[LedgerRow, ...]]:
+    """Read the ledgers of all chapters, verifying every status again.
+
+    Parameters
+    ----------
+    printed_folder : str or Path
+        Holds the files of printed values, ``chNN.yaml`` or ``chNN_topic.yaml``.
+    ledger_folder : str or Path
+        Holds what :func:`save_ledger` wrote under the same names.
+
+    Returns
+    -------
+    dict of int to tuple of LedgerRow
+        Rows by number of the chapter, its files one after the other.
+
+    Raises
+    ------
+    LedgerError
+        If a file name does not begin with the number of a chapter, and as :func:`load_ledger`.
+    """
+    chapters: dict[int, tuple[LedgerRow, ...]] = {}
+    for path in sorted(Path(printed_folder).glob("*.yaml")):
+        name = re.fullmatch(r"ch(\d\d)(_\w+)?", path.stem)
+        if name is None:
+            raise LedgerError(
+                f"{path.name}: a file of printed values must be called chNN.yaml or chNN_topic.yaml"
+            )
+        number = int(name[1])
+        chapters[number] = chapters.get(number, ()) + load_ledger(Path(ledger_folder) / path.name)
+    return chapters
 
 
 def _printed_value(file_name: str, entry: Any) -> PrintedValue:

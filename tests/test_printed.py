@@ -152,5 +152,27 @@ def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
     assert "| 282 mm | 283.04 mm | differs |" in table[3]
     assert "| stated | holds |" in table[4]
     assert "| 231.94 mm | - |" in table[5]
-    assert printed.counts_as_markdown({"ch03": rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 |"
+    assert printed.counts_as_markdown({3: rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 |"
     assert "To every digit. as chosen |" in printed.remarks_as_markdown(rows)
+
+
+def test_files_of_one_chapter_are_put_together(tmp_path):
+    (tmp_path / "printed").mkdir()
+    for name in ("ch03", "ch04", "ch04_design"):
+        entry = [ENTRY | {"id": name}]
+        source = tmp_path / "printed" / f"{name}.yaml"
+        source.write_text(yaml.safe_dump(entry), encoding="utf-8")
+        rows = printed.ledger(printed.load_printed(source), {name: 231.94})
+        printed.save_ledger(rows, tmp_path / "ledger" / source.name)
+    chapters = printed.load_chapters(tmp_path / "printed", tmp_path / "ledger")
+    assert {number: [row.printed.id for row in rows] for number, rows in chapters.items()} == {
+        3: ["ch03"],
+        4: ["ch04", "ch04_design"],
+    }
+
+
+@pytest.mark.parametrize("name", ["chapter3", "ch3", "notes", "ch04-design"])
+def test_a_file_that_names_no_chapter_is_refused(tmp_path, name):
+    (tmp_path / f"{name}.yaml").write_text(yaml.safe_dump([ENTRY]), encoding="utf-8")
+    with pytest.raises(printed.LedgerError, match=f"{name}.yaml: a file of printed values must be called"):
+        printed.load_chapters(tmp_path, tmp_path)
