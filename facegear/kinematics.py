@@ -14,9 +14,10 @@ both its ends, each as the limit from inside, so that a fit on Chebyshev nodes i
 """
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -112,28 +113,12 @@ def _ages(x: ArrayLike, pairs: int) -> FloatArray:
     return np.stack([start + j for j in range(pairs)])
 
 
-def _piece(
-    breakpoints: tuple[float, ...], contact_ratio: float, index: int, x: ArrayLike
-) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Ages (P,) + S of the pairs on one piece, with x in [−1, 1], and which pairs are in mesh there (P,)."""
-    piece = parameters.integer_at_least("index", index, 0)
-    if piece >= len(breakpoints):
-        raise ValueError(f"index must be below {len(breakpoints)}, the number of pieces, got {index!r}")
-    local = parameters.finite_array("x", x)
-    if np.any(np.abs(local) > 1.0):
-        raise ValueError(f"x must lie in [-1, 1] on a piece, got {local.flat[np.argmax(np.abs(local))]!r}")
-    start, end = (*breakpoints, 1.0)[piece : piece + 2]
-    fraction = 0.5 * (start * (1.0 - local) + end * (1.0 + local))
-    pairs = np.arange(_pairs_in_mesh(contact_ratio))
-    ages = fraction + pairs.reshape(-1, *([1] * fraction.ndim))
-    # No pair enters or leaves inside a piece: its middle decides for the whole.
-    in_mesh = 0.5 * (start + end) + pairs < contact_ratio
-    return ages, in_mesh
+States = TypeVar("States")
 
 
 @dataclass(frozen=True)
-class ContactPath:
-    """Path of the true contact points, the midpoints of the contact lines by arc length.
+class _TimedPairs(ABC, Generic[States]):
+    """Tooth pairs on a clock: which are in mesh when, for any law of their positions.
 
     Parameters
     ----------
@@ -157,6 +142,73 @@ class ContactPath:
     def pairs(self) -> int:
         """P = ceil(cr), the greatest number of tooth pairs in mesh at once."""
         return _pairs_in_mesh(self.contact_ratio)
+
+    @cached_property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Fractions of T0 in [0, 1), ascending from 0, where a pair enters (0) or leaves (cr − ⌊cr⌋)."""
+        return _merged([0.0, self.contact_ratio])
+
+    def pair_states(self, x: ArrayLike) -> States:
+        """Contact points of all pairs at times x [mesh periods], any real numbers of shape S; period 1."""
+        ages = _ages(x, self.pairs)
+        return self._states(ages, ages <= self.contact_ratio)
+
+    def pair_states_on_piece(self, index: int, x: ArrayLike) -> States:
+        """Contact points of all pairs on one smooth piece, both ends included, as limits from inside.
+
+        Parameters
+        ----------
+        index : int
+            Piece between `breakpoints[index]` and the next one (or 1).
+        x : array_like, shape S
+            From −1 at its start to 1 at its end.
+
+        Returns
+        -------
+        PairStates or SkewStates
+
+        Raises
+        ------
+        TypeError, ValueError
+            No such piece, or `x` outside [−1, 1].
+        """
+        piece = parameters.integer_at_least("index", index, 0)
+        if piece >= len(self.breakpoints):
+            raise ValueError(
+                f"index must be below {len(self.breakpoints)}, the number of pieces, got {index!r}"
+            )
+        local = parameters.finite_array("x", x)
+        if np.any(np.abs(local) > 1.0):
+            raise ValueError(
+                f"x must lie in [-1, 1] on a piece, got {local.flat[np.argmax(np.abs(local))]!r}"
+            )
+        start, end = (*self.breakpoints, 1.0)[piece : piece + 2]
+        fraction = 0.5 * (start * (1.0 - local) + end * (1.0 + local))
+        ages = np.stack([fraction + j for j in range(self.pairs)])
+        # No pair enters or leaves inside a piece: its middle decides for the whole.
+        in_mesh = 0.5 * (start + end) + np.arange(self.pairs) < self.contact_ratio
+        return self._states(ages, np.broadcast_to(in_mesh.reshape(-1, *([1] * local.ndim)), ages.shape))
+
+    @abstractmethod
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> States:
+        """Positions of pairs that have been in mesh for so many mesh periods, zero where not in mesh."""
+
+
+@dataclass(frozen=True)
+class ContactPath(_TimedPairs[PairStates]):
+    """Path of the true contact points, the midpoints of the contact lines by arc length.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more; default Tregold's, `drive.contact_ratio`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
 
     @property
     def angular_travel(self) -> float:
@@ -204,11 +256,6 @@ class ContactPath:
         angle = self.angular_travel * lines.angle
         return PairStates(np.ones(own.shape, dtype=bool), lines.radius, angle, lines.length)
 
-    def pair_states(self, x: ArrayLike) -> PairStates:
-        """Contact points of all pairs at times x [mesh periods], any real numbers of shape S."""
-        ages = _ages(x, self.pairs)
-        return self._states(ages, ages <= self.contact_ratio)
-
     def centroid(self, x: ArrayLike) -> Centroid:
         """Contact centroid (3-21) at times x [mesh periods], any real numbers of shape S; period 1.
 
@@ -239,12 +286,6 @@ class ContactPath:
             No such piece, or `x` outside [−1, 1].
         """
         return _weighted(self.pair_states_on_piece(index, x))
-
-    def pair_states_on_piece(self, index: int, x: ArrayLike) -> PairStates:
-        """Contact points of all pairs on one smooth piece; parameters and errors as in `centroid_on_piece`."""
-        ages, in_mesh = _piece(self.breakpoints, self.contact_ratio, index, x)
-        mask = np.broadcast_to(in_mesh.reshape(-1, *([1] * (ages.ndim - 1))), ages.shape)
-        return self._states(ages, mask)
 
     def overlaid(self, count: int, rotation: ArrayLike) -> PairStates:
         """Contact points of successive tooth pairs against the face gear's rotation (Fig. 3.9).
@@ -290,7 +331,7 @@ def _weighted(states: PairStates) -> Centroid:
 
 
 @dataclass(frozen=True)
-class SkewLine:
+class SkewLine(_TimedPairs[SkewStates]):
     """Contact points on the straight line from R2 to R1 in time, pair by pair (3-22).
 
     Parameters
@@ -304,50 +345,6 @@ class SkewLine:
     TypeError, ValueError
         `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
     """
-
-    drive: Drive
-    contact_ratio: float = field(default=None)  # type: ignore[assignment]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "contact_ratio", _checked_ratio(self.drive, self.contact_ratio))
-
-    @property
-    def pairs(self) -> int:
-        """P = ceil(cr), the greatest number of tooth pairs in mesh at once."""
-        return _pairs_in_mesh(self.contact_ratio)
-
-    @cached_property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Fractions of T0 in [0, 1), ascending from 0, where a pair enters (0) or leaves (cr − ⌊cr⌋)."""
-        return _merged([0.0, self.contact_ratio])
-
-    def pair_states(self, x: ArrayLike) -> SkewStates:
-        """Radii of all pairs at times x [mesh periods], any real numbers of shape S; period 1."""
-        ages = _ages(x, self.pairs)
-        return self._states(ages, ages <= self.contact_ratio)
-
-    def pair_states_on_piece(self, index: int, x: ArrayLike) -> SkewStates:
-        """Radii of all pairs on one piece, both ends included, as limits from inside.
-
-        Parameters
-        ----------
-        index : int
-            Piece between `breakpoints[index]` and the next one (or 1).
-        x : array_like, shape S
-            From −1 at its start to 1 at its end.
-
-        Returns
-        -------
-        SkewStates
-
-        Raises
-        ------
-        TypeError, ValueError
-            No such piece, or `x` outside [−1, 1].
-        """
-        ages, in_mesh = _piece(self.breakpoints, self.contact_ratio, index, x)
-        mask = np.broadcast_to(in_mesh.reshape(-1, *([1] * (ages.ndim - 1))), ages.shape)
-        return self._states(ages, mask)
 
     def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> SkewStates:
         travel = self.drive.inner_radius - self.drive.outer_radius
