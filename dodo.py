@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import nbformat
+import yaml
 from doit.exceptions import TaskFailed
 
 from tools.progress import CELLS, BuildReporter
@@ -132,6 +133,26 @@ def stage() -> None:
         shutil.copy2(array, SOURCE / "data")
 
 
+def write_config() -> Path:
+    """Write the configuration of the book, with buttons to the repository where its address is known.
+
+    A workflow on GitHub knows it; in anybody's clone a button would lead nowhere.
+    """
+    config = yaml.safe_load((ROOT / "_config.yml").read_text(encoding="utf-8"))
+    repository = os.environ.get("GITHUB_REPOSITORY")
+    if repository:
+        config["repository"] = {"url": f"https://github.com/{repository}", "branch": "main"}
+        config["launch_buttons"] = {
+            "notebook_interface": "jupyterlab",
+            "binderhub_url": "https://mybinder.org",
+            "thebe": False,
+        }
+        config["html"] |= {"use_repository_button": True, "use_issues_button": True}
+    path = BUILD / "config.yml"
+    path.write_text(yaml.safe_dump(config, sort_keys=False), encoding="utf-8")
+    return path
+
+
 def build_pages() -> TaskFailed | None:
     """Build the pages from scratch; any warning of Sphinx is a failure."""
     # From scratch, because Sphinx repeats a warning only for pages it reads anew: after a failed run the
@@ -140,7 +161,7 @@ def build_pages() -> TaskFailed | None:
     command = [str(Path(sysconfig.get_path("scripts")) / "jupyter-book"), "build", str(SOURCE)]
     command += [
         "--config",
-        str(ROOT / "_config.yml"),
+        str(write_config()),
         "--path-output",
         str(BUILD),
         "-W",
