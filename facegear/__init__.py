@@ -43,6 +43,10 @@ _PUBLIC = {
     "ResonanceBand": "hsu",
     "band_speeds": "hsu",
     "resonance_bands": "hsu",
+    # design
+    "critical_thickness": "design",
+    "design_body": "design",
+    "root_stress": "design",
 }
 
 __all__ = sorted(_PUBLIC)
