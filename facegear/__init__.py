@@ -29,6 +29,9 @@ _PUBLIC = {
     # models and maps
     "replace_parameter": "models",
     "stability_map": "maps",
+    "Tongue": "tracing",
+    "borders": "tracing",
+    "tongues": "tracing",
     # plate, transverse
     "Body": "plate",
     "Transverse": "transverse",
