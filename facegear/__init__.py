@@ -29,9 +29,8 @@ _PUBLIC = {
     # models and maps
     "replace_parameter": "models",
     "stability_map": "maps",
-    "Tongue": "tracing",
-    "borders": "tracing",
-    "tongues": "tracing",
+    "Tongue": "tongues",
+    "borders": "tongues",
     # plate, transverse
     "Body": "plate",
     "Transverse": "transverse",

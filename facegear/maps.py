@@ -4,6 +4,9 @@ A map is made of columns, one a speed. Where only the mass, damping or stiffness
 column, its transition matrices share nearly all their work (:func:`facegear.columns.column_spectral_radii`).
 Where other matrices change, they are interpolated along the parameter as far as they are smooth, and computed
 cell by cell where they are not. Columns are shared out in chunks over processes by joblib.
+
+What falls between the columns of a map, tongues narrower than their distance, is found by
+:func:`facegear.tongues.tongues`, which belongs to this module's public names.
 """
 
 from __future__ import annotations
@@ -34,9 +37,12 @@ from facegear.parameters import finite_array, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
 from facegear.stepping import Family
+from facegear.tongues import borders, tongues
 
 if TYPE_CHECKING:
     import xarray
+
+__all__ = ["borders", "stability_map", "tongues"]
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8

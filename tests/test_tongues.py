@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh_tridiagonal
 from scipy.optimize import brentq
 
-import facegear
+import facegear.maps
 from facegear.floquet import growth_rate
 from facegear.geometry import Drive
 from facegear.hsu import resonance_bands
@@ -16,7 +16,7 @@ from facegear.parameters import MeshLoad, rad_per_s, rpm
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
-from facegear.tracing import borders, tongues
+from facegear.tongues import borders, tongues
 from facegear.transverse import Transverse
 
 TURN = 2.0 * np.pi
@@ -337,5 +337,6 @@ def test_other_arguments_are_checked():
         borders(mathieu(0.1), "thickness", [0.1], 90.0, 110.0, jobs=1)
 
 
-def test_the_public_name_is_the_function_and_no_module():
-    assert facegear.tongues is tongues
+def test_maps_offers_tongues_as_well():
+    assert facegear.maps.tongues is tongues
+    assert facegear.borders is borders
