@@ -22,9 +22,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.collocation import is_suitable
-from facegear.columns import TOLERANCE, column_spectral_radii, interpolate
+from facegear.columns import GENERAL_ROUTE, TOLERANCE, column_spectral_radii, interpolate
 from facegear.floquet import (
-    AdaptiveMagnus,
     Collocation,
     Method,
     default_method,
@@ -323,7 +322,7 @@ def _model_column(sweep: _Sweep, speed: float) -> Array:
         return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
     method = sweep.method
     if method is None:
-        method = Collocation() if all(is_suitable(system) for system in systems) else AdaptiveMagnus()
+        method = Collocation() if all(is_suitable(system) for system in systems) else GENERAL_ROUTE
     # Coordinates in which entries are of comparable size, the same for the whole column.
     scale = Family(systems[:1]).scale
 
