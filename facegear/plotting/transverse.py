@@ -1,0 +1,306 @@
+"""Figures of chapter 4: modes of the disk, stability maps with their tongues, convergence, motion of the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
+
+from facegear.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, VERMILION, WIDTH, panels, styled
+
+# White is stable. The lightest unstable colour is well off white, and all get darker with growth, in grey too.
+_GROWTH = LinearSegmentedColormap.from_list("growth", mpl.colormaps["YlGnBu"](np.linspace(0.28, 1.0, 256)))
+
+_AXIS = {
+    "stiffness": r"bearing stiffness $\mu$",
+    "damping": r"bearing damping $\zeta$ [µs]",
+    "mass": r"pinion mass $\tau$",
+}
+_SCALE = {"stiffness": 1.0, "damping": 1e6, "mass": 1.0}
+_SPEED = "speed of the face gear [rpm]"
+
+
+def _parameter(chart: xr.Dataset) -> str:
+    return str(chart["growth_rate"].dims[0])
+
+
+def _draw_map(ax: Axes, chart: xr.Dataset, largest: float) -> Any:
+    """Colour what is unstable and draw its border."""
+    name = _parameter(chart)
+    growth = chart["growth_rate"].values
+    speed, value = chart["speed_rpm"].values, chart[name].values * _SCALE[name]
+    mesh = ax.pcolormesh(
+        speed,
+        value,
+        np.ma.masked_less_equal(growth, 0.0),
+        cmap=_GROWTH,
+        norm=Normalize(0.0, largest),
+        shading="nearest",
+        rasterized=True,
+    )
+    if (growth > 0).any():
+        ax.contour(speed, value, growth, levels=[0.0], colors=INK, linewidths=0.7)
+    ax.set(xlim=(0.0, float(speed[-1])), ylim=(0.0, float(value[-1])), ylabel=_AXIS[name])
+    ax.grid(False)
+    return mesh
+
+
+def _largest(charts: Sequence[xr.Dataset]) -> float:
+    return max(1e-9, *(float(chart["growth_rate"].max()) for chart in charts))
+
+
+def _draw_sections(ax: Axes, chart: xr.Dataset) -> None:
+    """Traced borders as dots, and the names of tongues above the section where they stand highest."""
+    scale = _SCALE[_parameter(chart)]
+    rows = [line.split() for line in chart.attrs["labels"].split("\n")]
+    places: dict[str, tuple[float, float, float]] = {}
+    for number, labels in enumerate(rows):
+        row = chart.isel(section=number)
+        height = float(row["section"]) * scale
+        for side in ("lower", "upper"):
+            ax.plot(row[side], np.full(row.sizes["tongue"], height), ".", color=VERMILION, markersize=4)
+        for tongue, label in enumerate(labels):
+            growth = float(row["largest_growth"][tongue])
+            if label not in places or growth > places[label][2]:
+                places[label] = (float(row["peak"][tongue]), height, growth)
+    taken: list[tuple[float, float]] = []
+    step = ax.get_ylim()[1] / chart.sizes["section"]
+    for label, (speed, height, _) in sorted(places.items(), key=lambda item: item[1][0]):
+        # Move up and down in half steps until no other name is in the way.
+        for shift in (0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0):
+            place = height + (shift + 0.25) * step
+            if 0.0 < place < ax.get_ylim()[1] and all(
+                abs(speed - x) > 78 or abs(place - y) > 0.42 * step for x, y in taken
+            ):
+                break
+        taken.append((speed, place))
+        ax.text(
+            speed,
+            place,
+            label,
+            ha="center",
+            va="center",
+            fontsize=8,
+            color=INK,
+            bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8},
+        )
+
+
+def _draw_safe_zone(ax: Axes, chart: xr.Dataset, limit: float | None, *, above: bool) -> None:
+    if limit is None:
+        return
+    height, top = limit * _SCALE[_parameter(chart)], ax.get_ylim()[1]
+    ax.axhline(height, color=GREEN, linestyle="--", linewidth=1.4)
+    ax.text(
+        12,
+        (height + top) / 2 if above else height / 2,
+        "safe zone",
+        color=GREEN,
+        va="center",
+        fontsize=11,
+        bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1},
+    )
+
+
+@styled
+def stability_maps(charts: Mapping[str, xr.Dataset], safe: Mapping[str, float | None]) -> Figure:
+    """Stability maps one below the other, with traced borders, names of tongues and safe zones (Figs 4.4, 4.5).
+
+    Parameters
+    ----------
+    charts : mapping of str to xarray.Dataset
+        Title to the arrays of :func:`facegear.transverse_arrays.stability_figure`.
+    safe : mapping of str to float or None
+        The same titles to the limit of the safe zone: above it for stiffness and damping, below it for mass.
+    """
+    figure, axes = panels(len(charts), 1, 3.4 * len(charts))
+    largest = _largest(list(charts.values()))
+    for ax, (title, chart) in zip(axes, charts.items(), strict=True):
+        mesh = _draw_map(ax, chart, largest)
+        _draw_sections(ax, chart)
+        _draw_safe_zone(ax, chart, safe[title], above=_parameter(chart) != "mass")
+        ax.set_title(title, loc="left")
+    axes[-1].set_xlabel(_SPEED)
+    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    return figure
+
+
+@styled
+def compared_maps(charts: Mapping[str, xr.Dataset], columns: int = 2) -> Figure:
+    """Draw maps side by side on one scale of colours.
+
+    Parameters
+    ----------
+    charts : mapping of str to xarray.Dataset
+        Title to the arrays of :func:`facegear.transverse_arrays.growth_map`.
+    columns : int, optional
+        Maps beside each other.
+    """
+    rows = -(-len(charts) // columns)
+    figure, axes = panels(rows, columns, 2.9 * rows + 0.5, sharex=True)
+    largest = _largest(list(charts.values()))
+    for place, (ax, (title, chart)) in enumerate(zip(axes, charts.items(), strict=True)):
+        mesh = _draw_map(ax, chart, largest)
+        ax.set_title(title, loc="left", fontsize=10)
+        if place // columns == rows - 1:
+            ax.set_xlabel(_SPEED)
+    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    return figure
+
+
+@styled
+def one_map(chart: xr.Dataset, title: str, largest: float) -> Figure:
+    """One map, on a scale of colours that a row of maps can share.
+
+    Parameters
+    ----------
+    chart : xarray.Dataset
+        From :func:`facegear.transverse_arrays.growth_map`.
+    title : str
+    largest : float
+        Growth rate at the end of the scale [1/s].
+    """
+    figure, (ax,) = panels(1, 1, 3.6)
+    mesh = _draw_map(ax, chart, largest)
+    ax.set_title(title, loc="left")
+    ax.set_xlabel(_SPEED)
+    figure.colorbar(mesh, ax=ax, label="growth rate [1/s]")
+    return figure
+
+
+@styled
+def hsu_over_floquet(chart: xr.Dataset, bands: xr.Dataset) -> Figure:
+    """Hsu's bands over the map of Floquet growth rates.
+
+    Parameters
+    ----------
+    chart : xarray.Dataset
+        From :func:`facegear.transverse_arrays.growth_map`.
+    bands : xarray.Dataset
+        From :func:`facegear.transverse_arrays.hsu_bands`.
+    """
+    figure, (ax,) = panels(1, 1, 4.4)
+    mesh = _draw_map(ax, chart, _largest([chart]))
+    scale = _SCALE[_parameter(chart)]
+    rows = [line.split() for line in bands.attrs["labels"].split("\n")]
+    for number, labels in enumerate(rows):
+        row, height = bands.isel(section=number), float(bands["section"][number]) * scale
+        for band in range(len(labels)):
+            ends = [float(row["lower"][band]), float(row["upper"][band])]
+            ax.plot(ends, [height, height], "|-", color=VERMILION, linewidth=1.8, markersize=9)
+    ax.plot([], [], "|-", color=VERMILION, label="Hsu, first order")
+    ax.legend(loc="upper left")
+    ax.set_xlabel(_SPEED)
+    figure.colorbar(mesh, ax=ax, label="growth rate (Floquet) [1/s]")
+    return figure
+
+
+@styled
+def plate_modes(data: xr.Dataset) -> Figure:
+    """Deflection of each mode and its nodal lines.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        From :func:`facegear.transverse_arrays.plate_modes`.
+    """
+    rows, columns = data.sizes["circles"], data.sizes["diameters"]
+    figure = Figure(figsize=(WIDTH, 2.15 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
+    angle = np.linspace(0.0, 2 * np.pi, 181)
+    radius, theta = np.meshgrid(data["radius"].values, angle, indexing="ij")
+    for m in range(rows):
+        for n in range(columns):
+            ax = axes[m, n]
+            w = data["mode"].values[m, n][:, np.newaxis] * np.cos(n * angle)
+            w = w / np.abs(w).max()
+            x, y = radius * np.cos(theta), radius * np.sin(theta)
+            ax.pcolormesh(x, y, w, cmap="PuOr", vmin=-1, vmax=1, shading="gouraud", rasterized=True)
+            inner = slice(2, None)  # The clamped edge itself is not a nodal line.
+            if n or (w[inner].min() < 0 < w[inner].max()):
+                ax.contour(x[inner], y[inner], w[inner], levels=[0.0], colors=INK, linewidths=1.4)
+            for edge in (0, -1):
+                ax.plot(x[edge], y[edge], color=GREY, linewidth=0.8)
+            ax.set_aspect("equal")
+            ax.axis("off")
+            ax.set_title(f"({m}, {n})  {float(data['frequency'][m, n]):.0f} Hz", fontsize=10)
+    return figure
+
+
+@styled
+def disk_stiffness(cases: Mapping[str, xr.Dataset]) -> Figure:
+    """Stiffness of the disk over speed at three radii, and the reference.
+
+    Parameters
+    ----------
+    cases : mapping of str to xarray.Dataset
+        Title to the arrays of :func:`facegear.transverse_arrays.stiffness_of_disk`.
+    """
+    figure, axes = panels(1, len(cases), 3.3)
+    names = ("inner end $R_1$", "middle", "outer end $R_2$")
+    for ax, (title, data) in zip(axes, cases.items(), strict=True):
+        for place, (name, colour, style) in enumerate(
+            zip(names, (ORANGE, BLUE, VERMILION), ("-.", "-", "--"), strict=True)
+        ):
+            ax.plot(data["speed_rpm"], data["stiffness"][place] / 1e6, style, color=colour, label=name)
+        ax.axhline(float(data["reference"]) / 1e6, color=INK, linewidth=0.8, linestyle=":", label="reference")
+        ax.set_title(title, loc="left")
+        ax.set_xlabel(_SPEED)
+        ax.set_ylim(bottom=0.0)
+    axes[0].set_ylabel("stiffness of the disk [N/µm]")
+    axes[0].legend(loc="lower left", ncols=2)
+    return figure
+
+
+@styled
+def convergence(data: xr.Dataset) -> Figure:
+    """Growth rates along a line of speeds for several bases.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        From :func:`facegear.transverse_arrays.convergence`.
+    """
+    figure, (ax,) = panels(1, 1, 3.9)
+    styles = zip((VERMILION, ORANGE, GREEN, BLUE), ("-", "-.", ":", "--"), strict=True)
+    for number, (colour, line) in zip(range(data.sizes["basis"]), styles, strict=False):
+        name = f"$M$ = {int(data['circles'][number])}, $N$ = {int(data['diameters'][number])}"
+        ax.plot(data["speed_rpm"], data["growth_rate"][number], line, color=colour, label=name)
+    ax.axhline(0.0, color=INK, linewidth=0.9)
+    ax.set(xlabel=_SPEED, ylabel="growth rate [1/s]")
+    ax.legend(loc="upper right")
+    return figure
+
+
+@styled
+def centroid_on_two_clocks(data: xr.Dataset, names: Sequence[str]) -> Figure:
+    """Radius and angle of the contact centroid over a mesh period.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        From :func:`facegear.transverse_arrays.centroid_motion`.
+    names : sequence of str
+        One a contact ratio.
+    """
+    figure, axes = panels(1, 2, 3.3)
+    for ax, variable, scale, label in zip(
+        axes,
+        ("radius", "angle"),
+        (1e3, 180 / np.pi),
+        ("radius $r_c$ [mm]", r"angle $\theta_c$ [°]"),
+        strict=True,
+    ):
+        for number, (name, colour, style) in enumerate(
+            zip(names, (VERMILION, BLUE, GREEN), ("-", "--", "-."), strict=False)
+        ):
+            ax.plot(data["time"], data[variable][number] * scale, style, color=colour, label=name)
+        ax.set(xlabel="time [mesh periods]", ylabel=label)
+    axes[0].legend(loc="upper right", fontsize=9)
+    return figure

@@ -1,0 +1,458 @@
+"""Arrays of chapter 4's figures, labelled, with units and the tolerances at which they are checked.
+
+Maps hold growth rates, not black and white. Where two multipliers meet inside the stable region the largest modulus
+has a corner and its rounding errors grow to their square root, some 1e-7; over a mesh period of half a millisecond
+that shows as 1e-4 of a growth rate per second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from facegear.hsu import band_speeds
+from facegear.kinematics import ContactPath
+from facegear.maps import stability_map
+from facegear.models import replace_parameter
+from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
+from facegear.plate import Body
+from facegear.reference import variable
+from facegear.tongues import Tongue, borders, tongues
+from facegear.transverse import Transverse, disk_stiffness, nominal_pinion_mass, reference_stiffness
+
+_growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
+_speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
+
+
+def describe(model: Transverse) -> str:
+    """Parameters of a model as text, for the provenance of a figure."""
+    body, load = model.body, model.load
+    angles = ", ".join(f"{np.degrees(angle):g}" for angle in model.pinion_angles)
+    values = {
+        "pinion_teeth": body.drive.pinion_teeth,
+        "gear_teeth": body.drive.gear_teeth,
+        "module_mm": round(body.drive.module * 1e3, 9),
+        "thickness_ratio": body.thickness_ratio,
+        "bore_radius_mm": round(body.bore_radius * 1e3, 9),
+        "nodal_circles": body.nodal_circles,
+        "nodal_diameters": body.nodal_diameters,
+        "stiffness": load.stiffness,
+        "damping_s": load.damping,
+        "mass": load.mass,
+        "contact_ratio": model.contact_ratio,
+    }
+    numbers = ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
+    return f"{numbers}, pinion_angles_deg = {angles}, rate = {model.rate}, travel = {model.travel}"
+
+
+def plate_modes(body: Body, samples: int = 61) -> xr.Dataset:
+    """Radial mode functions and natural frequencies of the disk at rest.
+
+    Parameters
+    ----------
+    body : Body
+    samples : int, optional
+        Radii from bore to rim.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``mode`` (circles, diameters, radius), R_mn times the outer radius [-]; ``frequency`` (circles, diameters)
+        [Hz]; ``radius`` over the outer radius.
+    """
+    integer_at_least("samples", samples, 2)
+    x = np.linspace(body.bore_ratio, 1.0, samples)
+    values = np.stack([modes(x) for modes in body.modes], axis=1)
+    both = ("circles", "diameters")
+    return xr.Dataset(
+        {
+            "mode": variable((*both, "radius"), values, "Radial mode function times a", "1", atol=1e-9),
+            "frequency": variable(
+                both, body.natural_frequencies(), "Natural frequency at rest", "Hz", rtol=1e-10
+            ),
+        },
+        coords={
+            "circles": np.arange(body.nodal_circles + 1),
+            "diameters": np.arange(body.nodal_diameters + 1),
+            "radius": x,
+        },
+        attrs={
+            "parameters": f"bore_ratio = {body.bore_ratio:.10g}, thickness_ratio = {body.thickness_ratio:.10g}"
+        },
+    )
+
+
+def stiffness_of_disk(body: Body, speeds_rpm: ArrayLike) -> xr.Dataset:
+    """Stiffness of the disk against speed at the middle and the two ends of the teeth (4-16).
+
+    Parameters
+    ----------
+    body : Body
+    speeds_rpm : array_like
+        Speeds of the face gear [rpm].
+
+    Returns
+    -------
+    xarray.Dataset
+        ``stiffness`` (place, speed_rpm) [N/m], ``place`` the fraction of the face width from R1; ``reference``
+        [N/m], the denominator of (4-17); ``pinion_mass`` [kg], that of (4-19).
+    """
+    speeds = np.asarray(speeds_rpm, dtype=float)
+    places = np.array([0.0, 0.5, 1.0])
+    radii = body.drive.inner_radius + places * (body.drive.outer_radius - body.drive.inner_radius)
+    values = [disk_stiffness(body, rad_per_s(speeds), float(radius)) for radius in radii]
+    exact = {"rtol": 1e-9}
+    return xr.Dataset(
+        {
+            "stiffness": variable(
+                ("place", "speed_rpm"), values, "Transverse stiffness of the disk", "N/m", **exact
+            ),
+            "reference": variable((), reference_stiffness(body), "Reference stiffness", "N/m", **exact),
+            "pinion_mass": variable((), nominal_pinion_mass(body), "Nominal pinion mass", "kg", **exact),
+        },
+        coords={"place": places, "speed_rpm": speeds},
+        attrs={
+            "parameters": f"outer_radius_mm = {1e3 * body.outer_radius:.8g}, "
+            f"thickness_ratio = {body.thickness_ratio:.10g}"
+        },
+    )
+
+
+def growth_map(
+    model: Transverse, speeds_rpm: ArrayLike, parameter: str, values: ArrayLike, *, jobs: int = 2
+) -> xr.Dataset:
+    """Growth rates over speed and one parameter of the mesh load (Figs 4.4, 4.5).
+
+    Parameters
+    ----------
+    model : Transverse
+    speeds_rpm : array_like
+        Speeds of the face gear [rpm], ascending.
+    parameter : {"stiffness", "damping", "mass"}
+        Swept parameter.
+    values : array_like
+        Its values.
+    jobs : int, optional
+        Number of processes.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``growth_rate`` (parameter, speed_rpm) [1/s], unstable where positive.
+    """
+    speeds = np.asarray(speeds_rpm, dtype=float)
+    chart = stability_map(model, rad_per_s(speeds), parameter, values, jobs=jobs, progress=False)
+    return xr.Dataset(
+        {"growth_rate": _growth((parameter, "speed_rpm"), chart.values, "Growth rate ln(max|α|)/T0")},
+        coords={parameter: np.asarray(values, dtype=float), "speed_rpm": speeds},
+        attrs={"parameters": f"{describe(model)}, swept = {parameter}"},
+    )
+
+
+def unstable_share(chart: xr.Dataset) -> float:
+    """Share of the cells of a map that are unstable [-]."""
+    return float((chart["growth_rate"] > 0.0).mean())
+
+
+def safe_limit(model: Transverse, chart: xr.Dataset, lowest_rpm: float, *, above: bool) -> float | None:
+    """Value of the swept parameter beyond which a map is stable at all speeds.
+
+    A grid of speeds can miss a narrow tongue, so rows that look safe are searched for tongues between
+    `lowest_rpm` and the highest speed, starting from the last row of the map that is unstable.
+
+    Parameters
+    ----------
+    model : Transverse
+        The model of the map.
+    chart : xarray.Dataset
+        From :func:`growth_map`.
+    lowest_rpm : float
+        Lowest speed of the face gear at which tongues are searched for [rpm].
+    above : bool
+        Whether the safe zone is looked for at the upper or the lower end of the axis.
+
+    Returns
+    -------
+    float or None
+        A value of the axis that is safe, close to the first one, or None if none was found.
+    """
+    growth = chart["growth_rate"]
+    name = str(growth.dims[0])
+    values = growth[name].values
+    order = np.arange(values.size) if above else np.arange(values.size)[::-1]
+    unstable = np.flatnonzero((growth.values[order] > 0.0).any(axis=1))
+    low, high = rad_per_s(lowest_rpm), rad_per_s(float(growth["speed_rpm"][-1]))
+    # A search is dear: the steps from the last unstable row double.
+    row, step = int(unstable.max(initial=-1)) + 1, 1
+    while row < values.size:
+        value = float(values[order[row]])
+        if not tongues(replace_parameter(model, name, value), low, high):
+            return value
+        row, step = row + step, 2 * step
+    return None
+
+
+def tongue_sections(
+    model: Transverse,
+    parameter: str,
+    values: ArrayLike,
+    speeds_rpm: tuple[float, float],
+    *,
+    jobs: int = 2,
+) -> xr.Dataset:
+    """Traced borders of all tongues at some values of a parameter.
+
+    Parameters
+    ----------
+    model : Transverse
+    parameter : str
+        Swept parameter.
+    values : array_like, shape (V,)
+        Its values.
+    speeds_rpm : tuple of float
+        Lowest and highest speed of the face gear [rpm].
+    jobs : int, optional
+        Number of processes.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] over (section, tongue), NaN beyond the
+        tongues of a section; coordinate ``section`` holds `values`. Labels of the tongues in the attribute
+        ``labels``, one line a section, separated by blanks.
+    """
+    low, high = rad_per_s(speeds_rpm[0]), rad_per_s(speeds_rpm[1])
+    sections = borders(model, parameter, values, low, high, jobs=jobs)
+    found = [section.tongues for section in sections]
+    return _sections(found, np.asarray(values, dtype=float), f"{describe(model)}, swept = {parameter}")
+
+
+def stability_figure(
+    model: Transverse,
+    parameter: str,
+    highest: float,
+    *,
+    cells: int = 200,
+    sections: int = 7,
+    traced_rpm: float = 50.0,
+    highest_rpm: float = 1000.0,
+    jobs: int = 2,
+) -> xr.Dataset:
+    """Map of growth rates together with traced borders of its tongues (one of Figs 4.4, 4.5).
+
+    Parameters
+    ----------
+    model : Transverse
+    parameter : {"stiffness", "damping", "mass"}
+        Swept parameter.
+    highest : float
+        End of its axis; the axis has `cells` values, none of them 0.
+    cells : int, optional
+        Values of the parameter, and speeds.
+    sections : int, optional
+        Values of the parameter, evenly spread over the axis, at which borders are traced.
+    traced_rpm : float, optional
+        Lowest speed of the face gear at which borders are traced [rpm]; lower down there are ever more and ever
+        narrower tongues.
+    highest_rpm : float, optional
+        Highest speed [rpm].
+    jobs : int, optional
+        Number of processes.
+
+    Returns
+    -------
+    xarray.Dataset
+        As :func:`growth_map` and :func:`tongue_sections`.
+    """
+    integer_at_least("cells", cells, 2)
+    share = np.arange(1, cells + 1) / cells
+    chart = growth_map(model, highest_rpm * share, parameter, highest * share, jobs=jobs)
+    places = highest * (np.arange(integer_at_least("sections", sections, 1)) + 0.5) / sections
+    traced = tongue_sections(model, parameter, places, (traced_rpm, highest_rpm), jobs=jobs)
+    return chart.assign(traced.data_vars).assign_attrs(labels=traced.attrs["labels"])
+
+
+def _sections(found: Sequence[Sequence[Tongue]], values: FloatArray, parameters: str) -> xr.Dataset:
+    """Rows of tongues of different numbers as arrays filled up with NaN."""
+    longest = max(1, *(len(row) for row in found))
+
+    def table(name: str) -> FloatArray:
+        rows = np.full((len(found), longest), np.nan)
+        for i, row in enumerate(found):
+            rows[i, : len(row)] = [getattr(tongue, name) for tongue in row]
+        return rows
+
+    both = ("section", "tongue")
+    return xr.Dataset(
+        {
+            "lower": _speed(both, rpm(table("lower")), "Lower border"),
+            "upper": _speed(both, rpm(table("upper")), "Upper border"),
+            # A maximum is known to the square root of the accuracy of the values around it.
+            "peak": variable(both, rpm(table("peak")), "Speed of the largest growth", "rpm", atol=0.1),
+            "largest_growth": _growth(both, table("growth_rate"), "Largest growth rate of the tongue"),
+        },
+        coords={"section": values, "tongue": np.arange(longest)},
+        attrs={
+            "parameters": parameters,
+            "labels": "\n".join(" ".join(tongue.label for tongue in row) for row in found),
+        },
+    )
+
+
+def convergence(
+    model: Transverse, modes: Sequence[tuple[int, int]], speeds_rpm: ArrayLike, *, jobs: int = 2
+) -> xr.Dataset:
+    """Growth rates of a model along a line of speeds for disks with more and more modes.
+
+    The bearing stays the same: μ is measured by the stiffness of the disk of `model`, although more modes make the
+    disk softer.
+
+    Parameters
+    ----------
+    model : Transverse
+    modes : sequence of (int, int)
+        M and N.
+    speeds_rpm : array_like
+        Speeds of the face gear [rpm], ascending.
+    jobs : int, optional
+        Number of processes.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``growth_rate`` (basis, speed_rpm) [1/s], ``basis`` numbering `modes`; ``circles`` and ``diameters`` over
+        basis hold M and N.
+    """
+    speeds = np.asarray(speeds_rpm, dtype=float)
+    rows = []
+    for circles, diameters in modes:
+        body = replace(model.body, nodal_circles=circles, nodal_diameters=diameters)
+        stiffness = model.load.stiffness * reference_stiffness(model.body) / reference_stiffness(body)
+        refined = replace(model, body=body, load=replace(model.load, stiffness=stiffness))
+        chart = stability_map(refined, rad_per_s(speeds), "stiffness", [stiffness], jobs=jobs, progress=False)
+        rows.append(chart.values[0])
+    return xr.Dataset(
+        {
+            "growth_rate": _growth(("basis", "speed_rpm"), rows, "Growth rate ln(max|α|)/T0"),
+            "circles": variable("basis", [m for m, _ in modes], "Largest number of nodal circles", "1"),
+            "diameters": variable("basis", [n for _, n in modes], "Largest number of nodal diameters", "1"),
+        },
+        coords={"basis": np.arange(len(modes)), "speed_rpm": speeds},
+        attrs={"parameters": f"{describe(model)}, modes = {tuple(modes)}"},
+    )
+
+
+def unstable_intervals(growth: xr.DataArray) -> list[tuple[float, float]]:
+    """Intervals of speed in which a line of growth rates is positive.
+
+    Parameters
+    ----------
+    growth : xarray.DataArray
+        Growth rates over ``speed_rpm``.
+
+    Returns
+    -------
+    list of (float, float)
+        Lower and upper border [rpm], interpolated linearly; ends of the line where it starts or ends unstable.
+    """
+    speed, value = growth["speed_rpm"].values, growth.values
+    unstable = np.concatenate([[False], value > 0.0, [False]])
+    starts, stops = (
+        np.flatnonzero(unstable[1:] & ~unstable[:-1]),
+        np.flatnonzero(~unstable[1:] & unstable[:-1]),
+    )
+
+    def crossing(i: int) -> float:
+        """Zero between points i - 1 and i."""
+        if i == 0 or i == speed.size:
+            return float(speed[min(i, speed.size - 1)])
+        return float(speed[i] - value[i] * (speed[i] - speed[i - 1]) / (value[i] - value[i - 1]))
+
+    return [(crossing(int(i)), crossing(int(j))) for i, j in zip(starts, stops, strict=True)]
+
+
+def centroid_motion(body: Body, contact_ratios: Sequence[float], samples: int = 401) -> xr.Dataset:
+    """Contact centroid over one mesh period on several clocks.
+
+    Parameters
+    ----------
+    body : Body
+    contact_ratios : sequence of float
+        Mesh periods that a tooth pair stays in mesh.
+    samples : int, optional
+        Instants.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``radius`` [m] and ``angle`` [rad] over (contact_ratio, time), time in mesh periods.
+    """
+    time = np.linspace(0.0, 1.0, samples)
+    states = [ContactPath(body.drive, ratio).centroid(time) for ratio in contact_ratios]
+    both = ("contact_ratio", "time")
+    return xr.Dataset(
+        {
+            "radius": variable(both, [state.radius for state in states], "Radius", "m", atol=1e-11),
+            "angle": variable(both, [state.angle for state in states], "Angle", "rad", atol=1e-10),
+        },
+        coords={"contact_ratio": list(contact_ratios), "time": time},
+        attrs={
+            "parameters": f"pinion_teeth = {body.drive.pinion_teeth}, gear_teeth = {body.drive.gear_teeth}"
+        },
+    )
+
+
+def hsu_bands(
+    model: Transverse,
+    parameter: str,
+    values: Sequence[float],
+    speeds_rpm: tuple[float, float],
+    order: int = 2,
+) -> xr.Dataset:
+    """Hsu's bands of speed at some values of a parameter.
+
+    Parameters
+    ----------
+    model : Transverse
+    parameter : str
+        Swept parameter.
+    values : sequence of float
+        Its values.
+    speeds_rpm : tuple of float
+        Lowest and highest speed of the face gear [rpm].
+    order : int, optional
+        Highest order s of the resonances.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``lower``, ``upper`` and ``centre`` [rpm] over (section, band), NaN beyond the bands of a section.
+    """
+    speeds = (float(rad_per_s(speeds_rpm[0])), float(rad_per_s(speeds_rpm[1])))
+    rows = [
+        band_speeds(replace_parameter(model, parameter, value).system, speeds, order=order, points=21)
+        for value in values
+    ]
+    longest = max(1, *(len(row) for row in rows))
+    tables = {name: np.full((len(rows), longest), np.nan) for name in ("lower", "upper", "centre")}
+    for name, table in tables.items():
+        for i, row in enumerate(rows):
+            table[i, : len(row)] = [rpm(getattr(band, name)) for band in row]
+    both = ("section", "band")
+    return xr.Dataset(
+        {
+            "lower": _speed(both, tables["lower"], "Lower border after Hsu"),
+            "upper": _speed(both, tables["upper"], "Upper border after Hsu"),
+            "centre": _speed(both, tables["centre"], "Speed at which frequencies of the mean system combine"),
+        },
+        coords={"section": list(values), "band": np.arange(longest)},
+        attrs={
+            "parameters": f"{describe(model)}, swept = {parameter}",
+            "labels": "\n".join(" ".join(band.label for band in row) for row in rows),
+        },
+    )

@@ -1,0 +1,258 @@
+"""Compute the anchors of chapter 4 and write them to data/anchors: `python -m tests.independent.make_anchors_ch04`.
+
+Takes some minutes. Multipliers come from :mod:`tests.independent.complex_galerkin`; of the package it uses the
+radial mode functions and the contact centroid, which chapter 3's anchors and the tests of the plate hold. Radial
+modes come from mpmath. Nothing is assembled by the package.
+"""
+
+import sys
+from functools import cache
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import yaml
+from scipy.optimize import brentq
+from tqdm import tqdm
+
+from facegear import ContactPath
+from facegear.cases import CASE_1, CASE_2, FIGURES
+from tests.independent import meshing_mpmath
+from tests.independent.complex_galerkin import ComplexDisk, Pinion, multipliers
+
+FOLDER = Path(__file__).resolve().parents[2] / "data" / "anchors"
+ROUTE = (
+    "tests/independent/complex_galerkin.py: (4-8) to (4-13) in complex exponentials, one smooth piece of the period "
+    "after the other by DOP853 at 1e-12; tolerance 1e-8 of the spectral radius"
+)
+PLATE_ROUTE = (
+    "tests/independent/make_anchors_ch04.py: boundary determinant of Bessel functions by mpmath, 30 digits"
+)
+MESH_ROUTE = (
+    "tests/independent/meshing_mpmath.py: contact centroid from a shaper moved numerically, 30 digits"
+)
+RADIUS_TOLERANCE = 1e-8
+CELLS, HIGHEST_RPM = 200, 1000.0
+
+# Rows and columns (from 1) of the 200 x 200 maps: inside tongues, on either side of borders, at low speed, in safety.
+PLACES = {
+    "4.4a": [(1, 106), (82, 110), (82, 111), (110, 113), (42, 54), (17, 179), (60, 8), (190, 150)],
+    "4.4b": [(1, 108), (19, 104), (19, 105), (76, 170), (6, 57), (55, 178), (100, 8), (190, 108)],
+    "4.4c": [(200, 105), (117, 48), (78, 165), (78, 166), (117, 67), (197, 185), (3, 42), (150, 8)],
+    "4.5a": [(1, 116), (100, 155), (100, 156), (33, 157), (16, 117), (28, 200), (50, 8), (180, 60)],
+    "4.5b": [(1, 117), (110, 116), (110, 117), (9, 125), (24, 118), (42, 199), (100, 8), (190, 154)],
+    "4.5c": [(200, 115), (128, 51), (63, 117), (63, 118), (122, 145), (178, 155), (60, 8), (20, 100)],
+}
+# With the geometric contact ratio: the strongest growth, and cells that Tregold's makes unstable.
+GEOMETRIC_PLACES = {
+    "4.4a": [(1, 106), (1, 107), (42, 108), (17, 179)],
+    "4.5a": [(1, 116), (16, 117), (28, 200)],
+}
+
+
+def rpm(value):
+    return value * np.pi / 30
+
+
+@cache
+def disk(body):
+    def radial(m, n, r):
+        return body.modes[n](r / body.outer_radius)[m] / body.outer_radius
+
+    steel = body.material
+    return ComplexDisk(
+        radial,
+        M=body.nodal_circles,
+        N=body.nodal_diameters,
+        a=body.outer_radius,
+        b=body.bore_radius,
+        h=body.thickness,
+        E=steel.youngs_modulus,
+        rho=steel.density,
+        nu=steel.poissons_ratio,
+        xi=steel.viscous_loss_factor,
+    )
+
+
+@cache
+def reference_stiffness(body):
+    middle = (body.drive.inner_radius + body.drive.outer_radius) / 2
+    return float(np.mean([disk(body).stiffness_at(middle, v) for v in np.linspace(0, rpm(1000.0), 101)]))
+
+
+def nominal_mass(body):
+    return body.material.density * np.pi * body.drive.pitch_radius**2 * body.drive.face_width
+
+
+@cache
+def pinion(body, contact_ratio):
+    path = ContactPath(body.drive, body.drive.contact_ratio if contact_ratio is None else contact_ratio)
+
+    def position(x):
+        state = path.centroid(np.asarray(x))
+        return state.radius, state.angle
+
+    return Pinion(position, path.breakpoints)
+
+
+def spectral_radius(body, speed_rpm, *, stiffness, damping, mass, contact_ratio=None, reference=None):
+    k_b = stiffness * reference_stiffness(body if reference is None else reference)
+    period = 2 * np.pi / (body.drive.gear_teeth * rpm(speed_rpm))
+    found = multipliers(
+        disk(body),
+        [pinion(body, contact_ratio)],
+        rpm(speed_rpm),
+        period,
+        m_p=mass * nominal_mass(body),
+        c_b=damping * k_b,
+        k_b=k_b,
+    )
+    return float(np.abs(found).max()), period
+
+
+def anchor(variable, value, atol, **at):
+    return {
+        "variable": variable,
+        "at": {k: float(v) for k, v in at.items()},
+        "value": float(value),
+        "atol": float(atol),
+    }
+
+
+def load_of(figure, value):
+    parameters = {name: getattr(figure.load, name) for name in ("stiffness", "damping", "mass")}
+    return parameters | {figure.parameter: value}
+
+
+def cells(number, contact_ratio=None, places=None):
+    figure = FIGURES[number]
+    for row, column in PLACES[number] if places is None else places:
+        value, speed = figure.highest * row / CELLS, HIGHEST_RPM * column / CELLS
+        radius, period = spectral_radius(
+            figure.body, speed, contact_ratio=contact_ratio, **load_of(figure, value)
+        )
+        at = {figure.parameter: value, "speed_rpm": speed}
+        yield anchor("growth_rate", np.log(radius) / period, RADIUS_TOLERANCE / (radius * period), **at)
+
+
+def border(body, low_rpm, high_rpm, load, reference=None):
+    """Speed between two others where the spectral radius passes 1 [rpm]."""
+    return brentq(
+        lambda speed: spectral_radius(body, speed, reference=reference, **load)[0] - 1.0,
+        low_rpm,
+        high_rpm,
+        xtol=1e-7,
+    )
+
+
+def determinant(body, n, root):
+    """Boundary matrix of (4-4) for J, Y, I, K of λr/a, second derivatives in r."""
+    nu, c = mpmath.mpf(body.material.poissons_ratio), mpmath.mpf(body.bore_ratio)
+    rows = [[], [], [], []]
+    # f_n' = (lower f_(n-1) + upper f_(n+1))/2
+    for f, lower, upper in (
+        (mpmath.besselj, 1, -1),
+        (mpmath.bessely, 1, -1),
+        (mpmath.besseli, 1, 1),
+        (mpmath.besselk, -1, -1),
+    ):
+
+        def derivative(k, x, order, f=f, lower=lower, upper=upper):
+            if order == 0:
+                return f(k, x)
+            return (lower * derivative(k - 1, x, order - 1) + upper * derivative(k + 1, x, order - 1)) / 2
+
+        def w(x, order=0, derivative=derivative):
+            return root**order * derivative(n, root * x, order)
+
+        one = mpmath.mpf(1)
+        d0, d1, d2, d3 = (w(one, order) for order in range(4))
+        rows[0].append(w(c))
+        rows[1].append(w(c, 1))
+        rows[2].append(d2 + nu * (d1 - n**2 * d0))
+        # d/dr (w'' + w'/r - n² w/r²) - (1-ν) n² (w' - w) at r = 1
+        rows[3].append(d3 + d2 - d1 - n**2 * (d1 - 2 * d0) - (1 - nu) * n**2 * (d1 - d0))
+    return mpmath.det(mpmath.matrix(rows))
+
+
+def plate():
+    mpmath.mp.dps = 30
+    body = CASE_1
+    rigidity = body.material.youngs_modulus * body.thickness**2 / 12 / (1 - body.material.poissons_ratio**2)
+    factor = np.sqrt(rigidity / body.material.density) / body.outer_radius**2 / (2 * np.pi)
+    for n in range(4):
+        found = sign_changes(lambda x, n=n: determinant(body, n, x), 1.0, 9.0, 2)
+        for m, root in enumerate(found):
+            frequency = float(root**2) * factor
+            yield anchor("frequency", frequency, 1e-9 * frequency, circles=m, diameters=n)
+
+
+def sign_changes(function, low, high, count):
+    """First roots of a function above `low`, by a fine scan and bisection-safe secants."""
+    grid = [mpmath.mpf(low) + mpmath.mpf(k) / 5 for k in range(int(5 * (high - low)) + 1)]
+    with mpmath.workdps(15):
+        values = [function(x) for x in grid]
+    roots = []
+    for left, right, a, b in zip(grid, grid[1:], values, values[1:], strict=False):
+        if a * b < 0:
+            roots.append(mpmath.findroot(function, (left, right), solver="anderson"))
+    return roots[:count]
+
+
+def stiffness(body):
+    radii = (body.drive.inner_radius, (body.drive.inner_radius + body.drive.outer_radius) / 2)
+    for speed in (0.0, 500.0, 1000.0):
+        for place, radius in zip((0.0, 0.5), radii, strict=True):
+            value = disk(body).stiffness_at(radius, rpm(speed))
+            yield anchor("stiffness", value, 1e-8 * value, place=place, speed_rpm=speed)
+    yield anchor("reference", reference_stiffness(body), 1e-8 * reference_stiffness(body))
+
+
+def centroid():
+    drive = meshing_mpmath.Drive(26, 130, "3.175e-3")
+    for ratio in (meshing_mpmath.tregold_contact_ratio(drive), meshing_mpmath.geometric_contact_ratio(drive)):
+        for time in ("0.1", "0.4", "0.75"):
+            radius, angle = meshing_mpmath.contact_centroid(drive, time, ratio)
+            travel = ratio / meshing_mpmath.geometric_contact_ratio(drive)
+            at = {"contact_ratio": ratio, "time": time}
+            yield anchor("radius", radius, 1e-11, **at)
+            yield anchor("angle", angle * travel, 1e-10, **at)
+
+
+def write(name, route, anchors):
+    text = yaml.safe_dump({"route": route, "anchors": list(anchors)}, sort_keys=False, width=110)
+    (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
+
+
+FILES = {
+    **{
+        f"ch04_figure_{number.replace('.', '_0')}": (ROUTE, lambda number=number: cells(number))
+        for number in FIGURES
+    },
+    **{
+        f"ch04_geometric_{number.replace('.', '_0')}": (
+            ROUTE,
+            lambda number=number: cells(
+                number, FIGURES[number].body.drive.geometric_contact_ratio, GEOMETRIC_PLACES[number]
+            ),
+        )
+        for number in GEOMETRIC_PLACES
+    },
+    "ch04_plate_modes": (PLATE_ROUTE, plate),
+    "ch04_stiffness_case_1": (ROUTE, lambda: stiffness(CASE_1)),
+    "ch04_stiffness_case_2": (ROUTE, lambda: stiffness(CASE_2)),
+    "ch04_centroid_clocks": (MESH_ROUTE, centroid),
+}
+
+
+def main():
+    """Make the anchors of the files named on the command line, of all when none is."""
+    chosen = sys.argv[1:] or list(FILES)
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for name in tqdm(chosen):
+        route, make = FILES[name]
+        write(name, route, make())
+
+
+if __name__ == "__main__":
+    main()
