@@ -7,8 +7,8 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from facegear import Drive, meshing_arrays, solids
-from facegear.plotting import interactive, meshing, schematics
+from facegear import Drive, classical, floquet, meshing_arrays, solids, stability_arrays
+from facegear.plotting import interactive, meshing, schematics, stability
 
 DRIVE = Drive(26, 130, 3.175e-3)
 TOOTH = meshing_arrays.tooth_and_contact_lines(DRIVE, lines=5, points=9)
@@ -108,3 +108,70 @@ def test_slider_has_a_picture_with_a_description_for_every_step():
     assert [
         f'alt="{alt}"' in page.value for alt, page in zip(("first", "second"), stack.children, strict=True)
     ] == [True] * 2
+
+
+GEARS = classical.gear_pair(1.1, 1.563, droop=0.4, shaft_damping=0.02)
+CHART = stability_arrays.chart(
+    lambda w: classical.mathieu(w, 1.0), np.linspace(0.5, 2.5, 9), np.linspace(0.0, 0.9, 7), "Mathieu"
+)
+BANDS = stability_arrays.bands(lambda e: classical.mathieu(2.0, e), [0.1, 0.5], 2, "Mathieu")
+DAMPED = stability_arrays.damped_charts(np.linspace(1.5, 2.5, 5), np.linspace(0.0, 0.9, 7), [0.05])
+
+
+@pytest.mark.parametrize(
+    ("draw", "shown"),
+    [
+        (
+            lambda: stability.swing(stability_arrays.swing(0.3, [1.5, 2.0], [2.0, 1.5], cycles=2)),
+            "(a) multipliers",
+        ),
+        (
+            lambda: stability.convergence(
+                {"(c) jumps": stability_arrays.convergence(GEARS, [8, 16, 32], "gears")},
+                {"(c) jumps": {"uniform": 0.87, "aligned": 1.99, "magnus": 3.94}},
+            ),
+            "3.94",
+        ),
+        (
+            lambda: stability.doubling(stability_arrays.doubling(GEARS, 16, 2, "gears")),
+            "change from half as many",
+        ),
+        (
+            lambda: stability.estimates(
+                stability_arrays.estimates(GEARS, [("magnus", floquet.Magnus(16))], "gears")
+            ),
+            "Magnus, aligned",
+        ),
+        (
+            lambda: stability.bordered_chart(
+                CHART, stability_arrays.transition_curves([0.0, 0.9], 2), BANDS, "tridiagonal eigenproblem"
+            ),
+            "tridiagonal eigenproblem",
+        ),
+        (
+            lambda: stability.duty_chart(stability_arrays.duty_chart([1.5, 2.0], [0.3, 0.5], 0.4)),
+            "duty (contact ratio − 1)",
+        ),
+        (lambda: stability.damped_chart(DAMPED.sel(damping_ratio=0.05), BANDS, 0.3), r"$\zeta$ = 0.05"),
+        (
+            lambda: stability.hsu_errors(
+                stability_arrays.hsu_errors([0.05, 0.1]), {"width": 1.0, "error": 2.0, "second_width": 2.0}
+            ),
+            "which Hsu lacks",
+        ),
+        (lambda: stability.pair_charts({"(a) spring": CHART}, {"(a) spring": BANDS}), "(1+1)/1"),
+    ],
+)
+def test_stability_figures_draw_and_carry_their_labels(draw, shown):
+    before = dict(mpl.rcParams)
+    figure = draw()
+    figure.canvas.draw()
+    assert shown in texts(figure)
+    assert dict(mpl.rcParams) == before
+
+
+def test_unstable_colours_stand_off_white_and_darken_in_grey():
+    # Relative luminance; white is 1.
+    luminance = stability._GROWTH(np.linspace(0.0, 1.0, 64))[:, :3] @ [0.2126, 0.7152, 0.0722]
+    assert luminance[0] < 0.9
+    assert (np.diff(luminance) < 0.0).all()

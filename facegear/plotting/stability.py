@@ -357,5 +357,6 @@ def pair_charts(charts: Mapping[str, xr.Dataset], bands: Mapping[str, xr.Dataset
     axes[-1].set_xlabel(r"parametric frequency $\omega$ [rad/s]")
     figure.colorbar(mesh, ax=axes, label=r"growth rate $\sigma$ [1/s]", pad=0.02)
     axes[0].plot([], [], "--", color=VERMILION, label="Hsu, with his label")
-    axes[0].legend(loc="upper right", framealpha=0.9, frameon=True, edgecolor="none")
+    axes[0].plot([], [], color=INK, linewidth=0.8, label="Floquet")
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
