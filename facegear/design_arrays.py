@@ -1,0 +1,386 @@
+"""Arrays of the design figures of chapter 4, labelled, with units and the tolerances at which they are checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+from facegear.design import (
+    BodyDesign,
+    CriticalThickness,
+    Lobe,
+    highest_lobes,
+    root_stress,
+    root_thickness,
+    tooth_thickness,
+)
+from facegear.geometry import DEDENDUM, Drive
+from facegear.kinematics import ContactPath, SkewLine
+from facegear.models import replace_parameter
+from facegear.parameters import FloatArray, integer_at_least, rpm
+from facegear.piecewise import PiecewiseChebyshev
+from facegear.plate import Body
+from facegear.reference import variable
+from facegear.tongues import tongues
+from facegear.transverse import Transverse, shape_vector
+
+# Tips are traced to 1e-5 in h/a; the speed of a maximum follows to the root of the accuracy of its height.
+_RATIO, _TIP_SPEED = 2e-5, 0.5
+
+ROOTS = ("chord at dedendum circle", "chord at base circle", "half a pitch", "root of the rack")
+"""Readings of the root thickness W of (4-20)."""
+
+
+def root_thicknesses(drive: Drive) -> dict[str, float]:
+    """Root thickness W of the pinion's tooth under several readings of the text's sketch.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    dict of str to float
+        Names of :data:`ROOTS` to W [m]. "chord at base circle": where the involute begins (at the dedendum circle if
+        that lies outside the base circle). "half a pitch": the thickness on the pitch circle kept down to the root.
+        "root of the rack": flanks straight at the pressure angle.
+    """
+    widest = max(drive.base_radius, drive.dedendum_radius)
+    half_pitch = math.pi * drive.module / 2
+    values = (
+        root_thickness(drive),
+        tooth_thickness(drive, widest),
+        half_pitch,
+        half_pitch + 2 * DEDENDUM * drive.module * math.tan(drive.pressure_angle),
+    )
+    return dict(zip(ROOTS, values, strict=True))
+
+
+def family_of_teeth(drives: Sequence[Drive], power: float, pinion_speed: float) -> xr.Dataset:
+    """Face width and root stress of a family of drives (Figs 4.7, 4.8, 4.11, 4.12).
+
+    Parameters
+    ----------
+    drives : sequence of Drive
+        Different numbers of pinion teeth.
+    power : float
+        P [W].
+    pinion_speed : float
+        Ω1 [rad/s].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``pinion_teeth``: ``face_width`` [m]; over (root, pinion_teeth): ``root_stress`` [Pa], ``root`` numbering
+        :data:`ROOTS`.
+    """
+    stress = [
+        [root_stress(drive, power, pinion_speed, root_thicknesses(drive)[name]) for drive in drives]
+        for name in ROOTS
+    ]
+    return xr.Dataset(
+        {
+            "face_width": variable(
+                "pinion_teeth", [drive.face_width for drive in drives], "Face width", "m", atol=1e-11
+            ),
+            "root_stress": variable(
+                ("root", "pinion_teeth"), stress, "Largest bending stress at the root", "Pa", rtol=1e-9
+            ),
+        },
+        coords={"pinion_teeth": [drive.pinion_teeth for drive in drives], "root": np.arange(len(ROOTS))},
+        attrs={
+            "parameters": f"power_W = {power:.10g}, pinion_speed = {pinion_speed:.10g}, "
+            f"modules_mm = {', '.join(f'{1e3 * drive.module:.8g}' for drive in drives)}",
+            "roots": "; ".join(ROOTS),
+        },
+    )
+
+
+def family_of_bodies(designs: Sequence[Sequence[BodyDesign]], highest_rpm: Sequence[float]) -> xr.Dataset:
+    """Critical thicknesses and weights of a family of drives (Figs 4.10, 4.14).
+
+    Parameters
+    ----------
+    designs : sequence of sequence of BodyDesign
+        From :func:`facegear.design.design_family`.
+    highest_rpm : sequence of float
+        Highest operating speeds of the face gear [rpm].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (highest_rpm, pinion_teeth): ``critical_ratio`` [-], ``critical_thickness`` [m], ``nominal_mass`` [kg],
+        ``tip_speed`` [rpm]; over pinion_teeth: ``root_stress`` [Pa]. Labels of the deciding lobes in the attribute
+        ``labels``, one line a speed range.
+    """
+    both = ("highest_rpm", "pinion_teeth")
+    columns = list(zip(*designs, strict=True))
+
+    def table(get: Callable[[BodyDesign], float]) -> FloatArray:
+        return np.array([[get(design) for design in column] for column in columns])
+
+    return xr.Dataset(
+        {
+            "critical_ratio": variable(
+                both,
+                table(lambda design: design.critical.thickness_ratio),
+                "Critical thickness ratio h/a",
+                "1",
+                atol=_RATIO,
+            ),
+            "critical_thickness": variable(
+                both,
+                table(lambda design: design.body.thickness),
+                "Critical thickness",
+                "m",
+                atol=0.3 * _RATIO,
+            ),
+            "nominal_mass": variable(
+                both, table(lambda design: design.body.mass), "Nominal mass of the body", "kg", rtol=5e-4
+            ),
+            "tip_speed": variable(
+                both,
+                table(lambda design: float(rpm(design.critical.lobe.speed))),
+                "Speed of the deciding lobe's tip",
+                "rpm",
+                atol=_TIP_SPEED,
+            ),
+            "root_stress": variable(
+                "pinion_teeth", [row[0].root_stress for row in designs], "Root stress", "Pa", rtol=1e-9
+            ),
+        },
+        coords={
+            "highest_rpm": list(highest_rpm),
+            "pinion_teeth": [row[0].body.drive.pinion_teeth for row in designs],
+        },
+        attrs={
+            "parameters": f"modules_mm = {', '.join(f'{1e3 * row[0].body.drive.module:.8g}' for row in designs)}",
+            "labels": "\n".join(
+                " ".join(design.critical.lobe.label for design in column) for column in columns
+            ),
+        },
+    )
+
+
+def with_tips(chart: xr.Dataset, lobes: Sequence[Lobe]) -> xr.Dataset:
+    """Add the traced tips of lobes to a chart over speed and thickness ratio (Figs 4.9, 4.13).
+
+    Parameters
+    ----------
+    chart : xarray.Dataset
+    lobes : sequence of Lobe
+
+    Returns
+    -------
+    xarray.Dataset
+        The chart with ``tip_ratio`` [-] and ``tip_speed`` [rpm] over ``tip``; labels in the attribute
+        ``tip_labels``.
+    """
+    return chart.assign(
+        tip_ratio=variable(
+            "tip", [lobe.thickness_ratio for lobe in lobes], "h/a of the tip of a lobe", "1", atol=_RATIO
+        ),
+        tip_speed=variable(
+            "tip", [float(rpm(lobe.speed)) for lobe in lobes], "Speed of the tip", "rpm", atol=_TIP_SPEED
+        ),
+    ).assign_attrs(tip_labels=" ".join(lobe.label for lobe in lobes))
+
+
+def lobe_near_tip(
+    model: Transverse, lobe: Lobe, speed_range: tuple[float, float], depths: Sequence[float]
+) -> xr.Dataset:
+    """Width of a lobe at some distances below its tip.
+
+    Parameters
+    ----------
+    model : Transverse
+    lobe : Lobe
+    speed_range : tuple of float
+        Speeds between which no other lobe lies there [rad/s].
+    depths : sequence of float
+        Distances below the tip, relative to its thickness ratio, ascending, in (0, 1).
+
+    Returns
+    -------
+    xarray.Dataset
+        ``width`` [rpm] of all tongues together and ``largest_growth`` [1/s] over ``thickness_ratio``.
+    """
+    ratios = lobe.thickness_ratio * (1.0 - np.asarray(depths, dtype=float))
+    found = [tongues(replace_parameter(model, "thickness_ratio", float(x)), *speed_range) for x in ratios]
+    widths = [float(rpm(sum(tongue.width for tongue in row))) for row in found]
+    growth = [max((tongue.growth_rate for tongue in row), default=0.0) for row in found]
+    # The ratios hang on the traced tip, whose tolerance of 1e-5 is a part of the smallest depths.
+    return xr.Dataset(
+        {
+            "width": variable("depth", widths, "Width of the lobe", "rpm", rtol=0.02, atol=0.02),
+            "largest_growth": variable("depth", growth, "Largest growth rate", "1/s", rtol=0.02, atol=0.02),
+        },
+        coords={"depth": np.asarray(depths, dtype=float)},
+        attrs={
+            "parameters": f"label = {lobe.label}, speeds = {speed_range[0]:.8g} to {speed_range[1]:.8g} rad/s"
+        },
+    )
+
+
+# --- what the text leaves open ------------------------------------------------------------------------------------
+
+Centroid = Literal["by length", "by pairs", "radial", "skew line"]
+
+
+class LongAddendum(Drive):
+    """Drive whose pinion has the shaper's addendum of 1.25 modules, so that contact lines reach further."""
+
+    @property
+    def pinion_tip_radius(self) -> float:
+        """Addendum circle of the pinion [m]."""
+        return self.shaper_tip_radius
+
+
+@dataclass(frozen=True)
+class OtherCentroid(Transverse):
+    """Transverse model with one pinion and another way of placing the load.
+
+    Parameters
+    ----------
+    centroid : {"by length", "by pairs", "radial", "skew line"}
+        Mean of the contact points weighted by the lengths of their lines (3-21), or with equal weights; "radial": by
+        length, but without motion around the gear's axis; "skew line": mean radius on (3-22), without that motion.
+    """
+
+    centroid: Centroid = "by length"
+
+    @cached_property
+    def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
+        """Shape vector at the point of the load."""
+        ratio = self.body.drive.contact_ratio if self.contact_ratio is None else self.contact_ratio
+        return (_shape_at(replace(self.body, thickness_ratio=0.04), ratio, self.centroid),)
+
+
+@lru_cache(maxsize=32)
+def _shape_at(body: Body, contact_ratio: float, centroid: Centroid) -> PiecewiseChebyshev:
+    """Shape vector against t/T0; it does not depend on the thickness of the body."""
+    if centroid == "skew line":
+        line = SkewLine(body.drive, contact_ratio)
+
+        def position(piece: int, local: FloatArray) -> tuple[FloatArray, FloatArray]:
+            states = line.pair_states_on_piece(piece, local)
+            radius = states.radius.sum(axis=0) / states.in_contact.sum(axis=0)
+            return radius, np.zeros_like(radius)
+
+        breakpoints = line.breakpoints
+    else:
+        path = ContactPath(body.drive, contact_ratio)
+
+        def position(piece: int, local: FloatArray) -> tuple[FloatArray, FloatArray]:
+            states = path.pair_states_on_piece(piece, local)
+            weight = states.in_contact.astype(float) if centroid == "by pairs" else states.length
+            weight = weight / weight.sum(axis=0)
+            angle = (weight * states.angle).sum(axis=0) * (centroid != "radial")
+            return (weight * states.radius).sum(axis=0), angle
+
+        breakpoints = path.breakpoints
+    edges = np.append(breakpoints, 1.0)
+
+    def shape(fraction: FloatArray, piece: int) -> FloatArray:
+        start, end = edges[piece], edges[piece + 1]
+        return shape_vector(body, *position(piece, (2 * fraction - start - end) / (end - start)))
+
+    return PiecewiseChebyshev.fit(shape, breakpoints)
+
+
+def variants(model: Transverse) -> dict[str, Transverse]:
+    """List the model as the text has it, and with one thing at a time taken differently.
+
+    Parameters
+    ----------
+    model : Transverse
+        With one pinion.
+
+    Returns
+    -------
+    dict of str to Transverse
+    """
+    drive, body, load = model.body.drive, model.body, model.load
+
+    def placed(centroid: Centroid) -> Transverse:
+        return OtherCentroid(body, load, contact_ratio=model.contact_ratio, centroid=centroid)
+
+    long = LongAddendum(
+        drive.pinion_teeth, drive.gear_teeth, drive.module, drive.pressure_angle, drive.shaft_angle
+    )
+    lighter = replace(load, mass=load.mass * (drive.base_radius / drive.pitch_radius) ** 2)
+    return {
+        "as in chapters 3 and 4": model,
+        "pinion addendum 1.25 modules": replace(model, body=replace(body, drive=long)),
+        "tooth pairs weighted equally": placed("by pairs"),
+        "base radius in the nominal mass": replace(model, load=lighter),
+        "no motion around the axis": placed("radial"),
+        "skew line": placed("skew line"),
+        "travel with the disk": replace(model, travel="with_disk"),
+    }
+
+
+def critical_of_variants(
+    models: Mapping[str, Transverse],
+    speed_ranges: Sequence[tuple[float, float]],
+    thickness_range: tuple[float, float],
+    jobs: int = 2,
+) -> xr.Dataset:
+    """Critical thickness ratio of several models.
+
+    Parameters
+    ----------
+    models : mapping of str to Transverse
+    speed_ranges : sequence of tuple of float
+        Operating speeds [rad/s].
+    thickness_range : tuple of float
+        As for :func:`facegear.design.highest_lobes`.
+    jobs : int
+        Number of processes.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``critical_ratio`` over (variant, highest_rpm); names in the attribute ``variants``.
+    """
+    integer_at_least("number of speed ranges", len(speed_ranges), 1)
+    from joblib import Parallel, delayed
+
+    work = [(model, speeds) for model in models.values() for speeds in speed_ranges]
+    found = Parallel(n_jobs=jobs)(
+        delayed(_critical)(model, speeds, thickness_range) for model, speeds in work
+    )
+    values = np.array([each.thickness_ratio for each in found]).reshape(len(models), -1)
+    return xr.Dataset(
+        {
+            "critical_ratio": variable(
+                ("variant", "highest_rpm"), values, "Critical thickness ratio h/a", "1", atol=_RATIO
+            )
+        },
+        coords={
+            "variant": np.arange(len(models)),
+            "highest_rpm": [round(float(rpm(highest)), 6) for _, highest in speed_ranges],
+        },
+        attrs={
+            "parameters": ", ".join(f"{rpm(low):.6g} to {rpm(high):.6g} rpm" for low, high in speed_ranges),
+            "variants": "; ".join(models),
+        },
+    )
+
+
+def _critical(
+    model: Transverse, speed_range: tuple[float, float], thickness_range: tuple[float, float]
+) -> CriticalThickness:
+    from threadpoolctl import threadpool_limits
+
+    def model_at(thickness_ratio: float) -> Transverse:
+        return replace_parameter(model, "thickness_ratio", thickness_ratio)
+
+    with threadpool_limits(limits=1):
+        return highest_lobes(model_at, speed_range, thickness_range)

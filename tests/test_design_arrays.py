@@ -1,0 +1,105 @@
+import numpy as np
+import pytest
+
+from facegear import design_arrays
+from facegear.design import (
+    BodyDesign,
+    CriticalThickness,
+    Lobe,
+    constant_diametral_pitch,
+    constant_pitch_radius,
+    root_stress,
+)
+from facegear.parameters import MeshLoad, rad_per_s
+from facegear.plate import Body
+from facegear.transverse import Transverse, coordinates, shape_vector
+
+DRIVE = constant_diametral_pitch(25)
+MODEL = Transverse(Body(DRIVE, 0.04), MeshLoad(stiffness=0.8, damping=1e-5, mass=1.0))
+
+
+def test_roots_are_ordered_from_thin_to_thick():
+    """Radial flanks below the base circle, then the involute, then straight flanks that spread."""
+    for teeth in (22, 25):
+        found = design_arrays.root_thicknesses(constant_diametral_pitch(teeth))
+        assert tuple(found) == design_arrays.ROOTS
+        dedendum, base, _, rack = found.values()
+        assert dedendum < base < rack
+    many = design_arrays.root_thicknesses(constant_diametral_pitch(35))
+    assert many["chord at dedendum circle"] == many["chord at base circle"]
+
+
+def test_family_of_teeth():
+    drives = [constant_pitch_radius(teeth) for teeth in (22, 30)]
+    data = design_arrays.family_of_teeth(drives, 4e5, 500.0)
+    assert data["root_stress"].sel(root=0).values.tolist() == [root_stress(d, 4e5, 500.0) for d in drives]
+    assert data["face_width"].values.tolist() == [drive.face_width for drive in drives]
+    for variable in data.data_vars.values():
+        assert variable.attrs["rtol"] + variable.attrs["atol"] > 0
+
+
+def test_family_of_bodies():
+    def designed(teeth, ratio, speed):
+        drive = constant_diametral_pitch(teeth)
+        critical = CriticalThickness((Lobe(ratio, speed, "(1+1)/1"),))
+        return BodyDesign(Body(drive, ratio), critical, 1e8 + teeth, 3e8)
+
+    rows = [
+        (designed(25, 0.03, 10.0), designed(25, 0.04, 20.0)),
+        (designed(30, 0.035, 11.0), designed(30, 0.045, 21.0)),
+    ]
+    data = design_arrays.family_of_bodies(rows, (300.0, 1000.0))
+    assert float(data["critical_ratio"].sel(highest_rpm=1000.0, pinion_teeth=30)) == 0.045
+    a, h = rows[0][0].body.outer_radius, rows[0][0].body.thickness
+    expected = 7840 * np.pi * (a**2 - 0.05**2) * h
+    assert float(data["nominal_mass"].sel(highest_rpm=300.0, pinion_teeth=25)) == pytest.approx(expected)
+    assert data["tip_speed"].values == pytest.approx(np.array([[10.0, 11.0], [20.0, 21.0]]) * 30 / np.pi)
+    assert data.attrs["labels"] == "(1+1)/1 (1+1)/1\n(1+1)/1 (1+1)/1"
+
+
+def test_centroid_by_length_is_the_model_s_own():
+    """The variants and the model come to the contact centroid on different ways."""
+    other = design_arrays.OtherCentroid(MODEL.body, MODEL.load)
+    x = np.linspace(0.001, 0.999, 57)
+    assert other.shapes[0](x) == pytest.approx(
+        MODEL.shapes[0](x), rel=1e-9, abs=1e-10 * MODEL.shapes[0].largest
+    )
+
+
+def test_variants_differ_where_they_say():
+    found = design_arrays.variants(MODEL)
+    system = {name: model.system(50.0) for name, model in found.items()}
+    own = system.pop("as in chapters 3 and 4").loads[0]
+    mass = system["base radius in the nominal mass"].loads[0].mass
+    assert mass == pytest.approx(own.mass * np.cos(DRIVE.pressure_angle) ** 2, rel=1e-12)
+    x = np.linspace(0.01, 0.99, 23)
+    radial = system["no motion around the axis"].loads[0].shape(x)
+    sines = [number for number, each in enumerate(coordinates(MODEL.body)) if each.wave == "sin"]
+    assert not radial[:, sines].any()
+    assert own.shape(x)[:, sines].all()
+    long = found["pinion addendum 1.25 modules"].body.drive
+    assert long.pinion_tip_radius == DRIVE.shaper_tip_radius
+    assert long.outer_radius == DRIVE.outer_radius
+    # (3-22) with one pair at a time: from R2 to R1.
+    skew = design_arrays._shape_at(MODEL.body, 1.0 + 1e-9, "skew line")
+    radii = DRIVE.outer_radius + (DRIVE.inner_radius - DRIVE.outer_radius) * x
+    assert skew(x) == pytest.approx(shape_vector(MODEL.body, radii, 0.0), rel=1e-6, abs=1e-9)
+
+
+def test_lobe_ends_like_a_parabola():
+    """Near a smooth maximum of the growth rate the width goes as the root of the depth."""
+    lobe = Lobe(0.0376134, 18.85, "(1+1)/1")
+    speeds = tuple(rad_per_s([150.0, 210.0]).tolist())
+    data = design_arrays.lobe_near_tip(MODEL, lobe, speeds, (0.005, 0.02))
+    assert float(data["width"][1] / data["width"][0]) == pytest.approx(2.0, rel=0.03)
+
+
+def test_critical_of_variants_and_tips():
+    speeds = tuple(rad_per_s([150.0, 300.0]).tolist())
+    data = design_arrays.critical_of_variants({"own": MODEL}, [speeds], (0.036, 0.039), jobs=1)
+    assert data.attrs["variants"] == "own"
+    assert data["highest_rpm"].values == pytest.approx([300.0])
+    assert float(data["critical_ratio"][0, 0]) == pytest.approx(0.0375, abs=1.5e-4)
+    tipped = design_arrays.with_tips(data, [Lobe(0.03, 10.0, "(1+2)/1")])
+    assert tipped.attrs["tip_labels"] == "(1+2)/1"
+    assert float(tipped["tip_speed"][0]) == pytest.approx(95.49297)
