@@ -16,14 +16,12 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from facegear.hsu import band_speeds
-from facegear.kinematics import ContactPath
 from facegear.maps import stability_map
 from facegear.models import replace_parameter
 from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
-from facegear.plate import Body
 from facegear.reference import variable
 from facegear.tongues import Tongue, borders, tongues
-from facegear.transverse import Transverse, disk_stiffness, nominal_pinion_mass, reference_stiffness
+from facegear.transverse import Transverse, reference_stiffness
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
@@ -48,79 +46,6 @@ def describe(model: Transverse) -> str:
     }
     numbers = ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
     return f"{numbers}, pinion_angles_deg = {angles}, rate = {model.rate}, travel = {model.travel}"
-
-
-def plate_modes(body: Body, samples: int = 61) -> xr.Dataset:
-    """Radial mode functions and natural frequencies of the disk at rest.
-
-    Parameters
-    ----------
-    body : Body
-    samples : int, optional
-        Radii from bore to rim.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``mode`` (circles, diameters, radius), R_mn times the outer radius [-]; ``frequency`` (circles, diameters)
-        [Hz]; ``radius`` over the outer radius.
-    """
-    integer_at_least("samples", samples, 2)
-    x = np.linspace(body.bore_ratio, 1.0, samples)
-    values = np.stack([modes(x) for modes in body.modes], axis=1)
-    both = ("circles", "diameters")
-    return xr.Dataset(
-        {
-            "mode": variable((*both, "radius"), values, "Radial mode function times a", "1", atol=1e-9),
-            "frequency": variable(
-                both, body.natural_frequencies(), "Natural frequency at rest", "Hz", rtol=1e-10
-            ),
-        },
-        coords={
-            "circles": np.arange(body.nodal_circles + 1),
-            "diameters": np.arange(body.nodal_diameters + 1),
-            "radius": x,
-        },
-        attrs={
-            "parameters": f"bore_ratio = {body.bore_ratio:.10g}, thickness_ratio = {body.thickness_ratio:.10g}"
-        },
-    )
-
-
-def stiffness_of_disk(body: Body, speeds_rpm: ArrayLike) -> xr.Dataset:
-    """Stiffness of the disk against speed at the middle and the two ends of the teeth (4-16).
-
-    Parameters
-    ----------
-    body : Body
-    speeds_rpm : array_like
-        Speeds of the face gear [rpm].
-
-    Returns
-    -------
-    xarray.Dataset
-        ``stiffness`` (place, speed_rpm) [N/m], ``place`` the fraction of the face width from R1; ``reference``
-        [N/m], the denominator of (4-17); ``pinion_mass`` [kg], that of (4-19).
-    """
-    speeds = np.asarray(speeds_rpm, dtype=float)
-    places = np.array([0.0, 0.5, 1.0])
-    radii = body.drive.inner_radius + places * (body.drive.outer_radius - body.drive.inner_radius)
-    values = [disk_stiffness(body, rad_per_s(speeds), float(radius)) for radius in radii]
-    exact = {"rtol": 1e-9}
-    return xr.Dataset(
-        {
-            "stiffness": variable(
-                ("place", "speed_rpm"), values, "Transverse stiffness of the disk", "N/m", **exact
-            ),
-            "reference": variable((), reference_stiffness(body), "Reference stiffness", "N/m", **exact),
-            "pinion_mass": variable((), nominal_pinion_mass(body), "Nominal pinion mass", "kg", **exact),
-        },
-        coords={"place": places, "speed_rpm": speeds},
-        attrs={
-            "parameters": f"outer_radius_mm = {1e3 * body.outer_radius:.8g}, "
-            f"thickness_ratio = {body.thickness_ratio:.10g}"
-        },
-    )
 
 
 def growth_map(
@@ -151,6 +76,45 @@ def growth_map(
         {"growth_rate": _growth((parameter, "speed_rpm"), chart.values, "Growth rate ln(max|α|)/T0")},
         coords={parameter: np.asarray(values, dtype=float), "speed_rpm": speeds},
         attrs={"parameters": f"{describe(model)}, swept = {parameter}"},
+    )
+
+
+def map_family(
+    model: Transverse,
+    name: str,
+    members: Sequence[float],
+    speeds_rpm: ArrayLike,
+    parameter: str,
+    values: ArrayLike,
+    *,
+    jobs: int = 2,
+) -> xr.Dataset:
+    """Compute a map for each of several values of a further parameter.
+
+    Parameters
+    ----------
+    model : Transverse
+    name : str
+        The further parameter, a field of the mesh load.
+    members : sequence of float
+        Its values.
+    speeds_rpm, parameter, values, jobs
+        As for :func:`growth_map`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``growth_rate`` (name, parameter, speed_rpm) [1/s].
+    """
+    maps = [
+        growth_map(replace_parameter(model, name, value), speeds_rpm, parameter, values, jobs=jobs)
+        for value in members
+    ]
+    stacked = np.stack([chart["growth_rate"].values for chart in maps])
+    return xr.Dataset(
+        {"growth_rate": _growth((name, parameter, "speed_rpm"), stacked, "Growth rate ln(max|α|)/T0")},
+        coords={name: list(members), **maps[0].coords},
+        attrs={"parameters": f"{describe(model)}, swept = {parameter} and {name}"},
     )
 
 
@@ -187,13 +151,13 @@ def safe_limit(model: Transverse, chart: xr.Dataset, lowest_rpm: float, *, above
     order = np.arange(values.size) if above else np.arange(values.size)[::-1]
     unstable = np.flatnonzero((growth.values[order] > 0.0).any(axis=1))
     low, high = rad_per_s(lowest_rpm), rad_per_s(float(growth["speed_rpm"][-1]))
-    # A search is dear: the steps from the last unstable row double.
-    row, step = int(unstable.max(initial=-1)) + 1, 1
-    while row < values.size:
+    # A search is dear: the steps from the last unstable row double, and end with the last row of all.
+    first = int(unstable.max(initial=-1)) + 1
+    rows = {first + 2**power - 1 for power in range(16)} | {values.size - 1}
+    for row in sorted(row for row in rows if first <= row < values.size):
         value = float(values[order[row]])
         if not tongues(replace_parameter(model, name, value), low, high):
             return value
-        row, step = row + step, 2 * step
     return None
 
 
@@ -374,37 +338,6 @@ def unstable_intervals(growth: xr.DataArray) -> list[tuple[float, float]]:
         return float(speed[i] - value[i] * (speed[i] - speed[i - 1]) / (value[i] - value[i - 1]))
 
     return [(crossing(int(i)), crossing(int(j))) for i, j in zip(starts, stops, strict=True)]
-
-
-def centroid_motion(body: Body, contact_ratios: Sequence[float], samples: int = 401) -> xr.Dataset:
-    """Contact centroid over one mesh period on several clocks.
-
-    Parameters
-    ----------
-    body : Body
-    contact_ratios : sequence of float
-        Mesh periods that a tooth pair stays in mesh.
-    samples : int, optional
-        Instants.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``radius`` [m] and ``angle`` [rad] over (contact_ratio, time), time in mesh periods.
-    """
-    time = np.linspace(0.0, 1.0, samples)
-    states = [ContactPath(body.drive, ratio).centroid(time) for ratio in contact_ratios]
-    both = ("contact_ratio", "time")
-    return xr.Dataset(
-        {
-            "radius": variable(both, [state.radius for state in states], "Radius", "m", atol=1e-11),
-            "angle": variable(both, [state.angle for state in states], "Angle", "rad", atol=1e-10),
-        },
-        coords={"contact_ratio": list(contact_ratios), "time": time},
-        attrs={
-            "parameters": f"pinion_teeth = {body.drive.pinion_teeth}, gear_teeth = {body.drive.gear_teeth}"
-        },
-    )
 
 
 def hsu_bands(

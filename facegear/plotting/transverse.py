@@ -289,7 +289,7 @@ def centroid_on_two_clocks(data: xr.Dataset, names: Sequence[str]) -> Figure:
     names : sequence of str
         One a contact ratio.
     """
-    figure, axes = panels(1, 2, 3.3)
+    figure, axes = panels(1, 2, 3.5)
     for ax, variable, scale, label in zip(
         axes,
         ("radius", "angle"),
@@ -302,5 +302,5 @@ def centroid_on_two_clocks(data: xr.Dataset, names: Sequence[str]) -> Figure:
         ):
             ax.plot(data["time"], data[variable][number] * scale, style, color=colour, label=name)
         ax.set(xlabel="time [mesh periods]", ylabel=label)
-    axes[0].legend(loc="upper right", fontsize=9)
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure

@@ -6,7 +6,9 @@ modes come from mpmath. Nothing is assembled by the package.
 """
 
 import sys
+from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import mpmath
@@ -17,8 +19,10 @@ from tqdm import tqdm
 
 from facegear import ContactPath
 from facegear.cases import CASE_1, CASE_2, FIGURES
+from facegear.models import replace_parameter
 from tests.independent import meshing_mpmath
 from tests.independent.complex_galerkin import ComplexDisk, Pinion, multipliers
+from tests.test_transverse import momentum_multipliers
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "anchors"
 ROUTE = (
@@ -30,6 +34,14 @@ PLATE_ROUTE = (
 )
 MESH_ROUTE = (
     "tests/independent/meshing_mpmath.py: contact centroid from a shaper moved numerically, 30 digits"
+)
+TOTAL_ROUTE = (
+    "tests/test_transverse.py: momentum form of the total rate, p = q' + phi m u', without kicks, by DOP853, with the "
+    "package's disk matrices and shape vectors; tolerance 1e-8 of the spectral radius"
+)
+MEAN_ROUTE = (
+    "tests/independent/complex_galerkin.py: complex form with its periodic matrices averaged over a mesh period; "
+    "centres of the bands only, their borders are held by the tests of Hsu's method"
 )
 RADIUS_TOLERANCE = 1e-8
 CELLS, HIGHEST_RPM = 200, 1000.0
@@ -85,22 +97,24 @@ def nominal_mass(body):
 
 
 @cache
-def pinion(body, contact_ratio):
+def pinion(body, contact_ratio, sense):
     path = ContactPath(body.drive, body.drive.contact_ratio if contact_ratio is None else contact_ratio)
 
     def position(x):
         state = path.centroid(np.asarray(x))
-        return state.radius, state.angle
+        return state.radius, sense * state.angle
 
     return Pinion(position, path.breakpoints)
 
 
-def spectral_radius(body, speed_rpm, *, stiffness, damping, mass, contact_ratio=None, reference=None):
+def spectral_radius(
+    body, speed_rpm, *, stiffness, damping, mass, contact_ratio=None, reference=None, sense=1
+):
     k_b = stiffness * reference_stiffness(body if reference is None else reference)
     period = 2 * np.pi / (body.drive.gear_teeth * rpm(speed_rpm))
     found = multipliers(
         disk(body),
-        [pinion(body, contact_ratio)],
+        [pinion(body, contact_ratio, sense)],
         rpm(speed_rpm),
         period,
         m_p=mass * nominal_mass(body),
@@ -131,18 +145,81 @@ def cells(number, contact_ratio=None, places=None):
         radius, period = spectral_radius(
             figure.body, speed, contact_ratio=contact_ratio, **load_of(figure, value)
         )
-        at = {figure.parameter: value, "speed_rpm": speed}
-        yield anchor("growth_rate", np.log(radius) / period, RADIUS_TOLERANCE / (radius * period), **at)
+        yield growth(radius, period, **{figure.parameter: value, "speed_rpm": speed})
 
 
-def border(body, low_rpm, high_rpm, load, reference=None):
-    """Speed between two others where the spectral radius passes 1 [rpm]."""
-    return brentq(
-        lambda speed: spectral_radius(body, speed, reference=reference, **load)[0] - 1.0,
-        low_rpm,
-        high_rpm,
-        xtol=1e-7,
-    )
+def growth(radius, period, **at):
+    """Anchor of a growth rate, with the tolerance of the spectral radius."""
+    return anchor("growth_rate", np.log(radius) / period, RADIUS_TOLERANCE / (radius * period), **at)
+
+
+def convergence():
+    """Follow the line of Fig. 4.4(c) at τ = 1, bearing held, with the coarsest and the finest basis."""
+    load = {"stiffness": 0.6, "damping": 3e-6, "mass": 1.0}
+    for basis, (circles, diameters), speeds in ((0, (1, 3), (500, 540)), (2, (3, 8), (495, 540, 660))):
+        body = replace(CASE_1, nodal_circles=circles, nodal_diameters=diameters)
+        for speed in speeds:
+            radius, period = spectral_radius(body, speed, reference=CASE_1, **load)
+            yield growth(radius, period, basis=basis, speed_rpm=speed)
+
+
+def with_disk():
+    for value, speed in ((0.02, 530.0), (0.5, 660.0), (0.8, 850.0), (1.6, 300.0)):
+        radius, period = spectral_radius(CASE_1, speed, sense=-1, **load_of(FIGURES["4.4a"], value))
+        yield growth(radius, period, stiffness=value, speed_rpm=speed)
+
+
+def total(contact_ratio, places):
+    model = FIGURES["4.4a"].model(rate="total", contact_ratio=contact_ratio)
+    for value, speed in places:
+        found = momentum_multipliers(replace_parameter(model, "stiffness", value), rpm(speed))
+        period = 2 * np.pi / (CASE_1.drive.gear_teeth * rpm(speed))
+        yield growth(np.abs(found).max(), period, stiffness=value, speed_rpm=speed)
+
+
+def masses():
+    for mass, value, speed in ((0.5, 0.2, 540.0), (0.75, 0.4, 660.0), (1.0, 0.6, 540.0), (1.5, 0.6, 860.0)):
+        radius, period = spectral_radius(CASE_1, speed, stiffness=value, damping=3e-6, mass=mass)
+        yield growth(radius, period, mass=mass, stiffness=value, speed_rpm=speed)
+
+
+def mean_frequencies(body, speed, *, stiffness, damping, mass):
+    """Natural frequencies of the complex form with M(t), C(t), K(t) replaced by their means over a period."""
+    plate, contact = disk(body), pinion(body, None, 1)
+    M, C, K = plate.constant_matrices(rpm(speed))
+    n = np.repeat(plate.waves, plate.M + 1)
+    points, weights = np.polynomial.legendre.leggauss(40)
+    edges = np.append(contact.instants, 1.0)
+    mean = np.zeros_like(M)
+    for start, end in pairwise(edges):
+        for point, weight in zip(points, weights, strict=True):
+            r, theta = contact.position((start + end) / 2 + (end - start) / 2 * point)
+            R = np.array([plate.radial(m, abs(k), r) for k in plate.waves for m in range(plate.M + 1)])
+            wave = np.exp(1j * theta * (n[None, :] - n[:, None]))
+            mean += (end - start) / 2 * weight * wave * np.outer(R, R) / (2 * np.pi * plate.rho * plate.h)
+    k_b = stiffness * reference_stiffness(body)
+    M = M + mean * mass * nominal_mass(body)
+    C, K = C + mean * damping * k_b, K + mean * k_b
+    zero, one = np.zeros_like(M), np.eye(len(M))
+    A = np.block([[zero, one], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+    found = np.linalg.eigvals(A).imag
+    return np.sort(found[found > 0])
+
+
+def centres():
+    """Speeds at which two frequencies of the mean system add up to the meshing frequency, μ = 0.25."""
+    load = {"stiffness": 0.25, "damping": 3e-6, "mass": 1.0}
+    for band, (k, j), between in (
+        (5, (1, 8), (480, 580)),
+        (6, (1, 9), (500, 600)),
+        (10, (1, 13), (750, 950)),
+    ):
+
+        def detuning(speed, k=k, j=j):
+            frequencies = mean_frequencies(CASE_1, speed, **load)
+            return CASE_1.drive.gear_teeth * rpm(speed) - frequencies[k - 1] - frequencies[j - 1]
+
+        yield anchor("centre", brentq(detuning, *between, xtol=1e-9), 1e-5, section=0.25, band=band)
 
 
 def determinant(body, n, root):
@@ -242,6 +319,15 @@ FILES = {
     "ch04_stiffness_case_1": (ROUTE, lambda: stiffness(CASE_1)),
     "ch04_stiffness_case_2": (ROUTE, lambda: stiffness(CASE_2)),
     "ch04_centroid_clocks": (MESH_ROUTE, centroid),
+    "ch04_convergence": (ROUTE, convergence),
+    "ch04_with_disk_4_04a": (ROUTE, with_disk),
+    "ch04_pinion_mass": (ROUTE, masses),
+    "ch04_total_4_04a": (TOTAL_ROUTE, lambda: total(None, ((0.02, 530.0), (0.5, 660.0), (1.6, 900.0)))),
+    "ch04_total_geometric_4_04a": (
+        TOTAL_ROUTE,
+        lambda: total(CASE_1.drive.geometric_contact_ratio, ((0.02, 530.0), (0.5, 660.0), (1.6, 900.0))),
+    ),
+    "ch04_hsu": (MEAN_ROUTE, centres),
 }
 
 

@@ -1,0 +1,126 @@
+"""Arrays of chapter 4's figures, and the drawings made of them."""
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import xarray as xr
+
+from facegear import disk_arrays, reference
+from facegear import transverse_arrays as arrays
+from facegear.cases import CASE_1, FIGURES
+from facegear.floquet import growth_rate
+from facegear.models import replace_parameter
+from facegear.parameters import rad_per_s
+from facegear.plotting import transverse as draw
+
+MODEL = FIGURES["4.4a"].model()
+
+
+@pytest.fixture(scope="module")
+def figure():
+    return arrays.stability_figure(MODEL, "stiffness", 2.0, cells=10, sections=1, traced_rpm=400.0, jobs=1)
+
+
+@pytest.fixture(scope="module")
+def line():
+    return arrays.convergence(FIGURES["4.4c"].model(), [(1, 3), (1, 2)], [500.0, 540.0, 600.0, 620.0], jobs=1)
+
+
+def texts(drawing):
+    drawing.canvas.draw()
+    return " ".join(text.get_text() for text in drawing.findobj(mpl.text.Text))
+
+
+def check_round_trip(dataset, tmp_path):
+    stored = reference.load(reference.save(dataset, tmp_path / "figure.nc"))
+    assert all(row.largest_absolute == 0.0 for row in reference.compare(dataset, stored))
+
+
+def test_maps_hold_growth_rates_of_single_cells(figure, tmp_path):
+    check_round_trip(figure, tmp_path)
+    for value, speed in ((0.2, 500.0), (1.0, 700.0), (2.0, 1000.0)):
+        system = replace_parameter(MODEL, "stiffness", value).system(float(rad_per_s(speed)))
+        cell = float(figure["growth_rate"].sel(stiffness=value, speed_rpm=speed))
+        assert cell == pytest.approx(growth_rate(system), abs=1e-4)
+
+
+def test_traced_borders_have_no_growth(figure):
+    section = figure.isel(section=0)
+    assert len(figure.attrs["labels"].split()) == section["lower"].notnull().sum() > 0
+    model = replace_parameter(MODEL, "stiffness", float(section["section"]))
+    for side in ("lower", "upper"):
+        for speed in section[side].dropna("tongue").values:
+            # The threshold of the search is a growth of 1e-8 in a mesh period.
+            assert abs(growth_rate(model.system(float(rad_per_s(speed))))) < 1e-3
+    peak = float(rad_per_s(float(section["peak"][0])))
+    assert growth_rate(model.system(peak)) == pytest.approx(float(section["largest_growth"][0]), rel=1e-6)
+
+
+def test_safe_limit_finds_what_lies_between_the_speeds_of_a_map():
+    # A map that sees nothing of the tongues.
+    blind = xr.DataArray(
+        np.full((3, 1), -1.0),
+        dims=("stiffness", "speed_rpm"),
+        coords={"stiffness": [0.25, 1.0, 1.9], "speed_rpm": [600.0]},
+    )
+    chart = xr.Dataset({"growth_rate": blind})
+    assert arrays.safe_limit(MODEL, chart, 500.0, above=True) == 1.9
+    assert arrays.safe_limit(MODEL, chart.isel(stiffness=[0, 1]), 500.0, above=True) is None
+
+
+def test_share_and_intervals_of_known_growth():
+    growth = xr.DataArray(
+        [1.0, -1.0, -1.0, 1.0, 3.0, -1.0], dims="speed_rpm", coords={"speed_rpm": np.arange(6.0)}
+    )
+    assert arrays.unstable_intervals(growth) == [(0.0, 0.5), (2.5, 4.75)]
+    assert arrays.unstable_share(xr.Dataset({"growth_rate": growth})) == 0.5
+    assert arrays.unstable_intervals(-abs(growth)) == []
+
+
+def test_convergence_starts_from_the_model_itself(line, tmp_path):
+    check_round_trip(line, tmp_path)
+    model = FIGURES["4.4c"].model()
+    for k, speed in enumerate(line["speed_rpm"].values):
+        expected = growth_rate(model.system(float(rad_per_s(speed))))
+        assert float(line["growth_rate"][0, k]) == pytest.approx(expected, abs=1e-4)
+
+
+def test_families_are_stacks_of_maps(tmp_path):
+    family = arrays.map_family(MODEL, "mass", [0.5, 1.0], [500.0, 540.0], "stiffness", [0.2, 0.6], jobs=1)
+    check_round_trip(family, tmp_path)
+    alone = arrays.growth_map(MODEL, [500.0, 540.0], "stiffness", [0.2, 0.6], jobs=1)
+    np.testing.assert_allclose(family["growth_rate"].sel(mass=1.0), alone["growth_rate"], rtol=1e-9)
+
+
+def test_small_arrays_survive_their_files(tmp_path):
+    for dataset in (
+        disk_arrays.plate_modes(CASE_1, samples=5),
+        disk_arrays.stiffness_of_disk(CASE_1, [0.0, 1000.0]),
+        disk_arrays.centroid_motion(CASE_1, [1.5, 3.0], samples=11),
+    ):
+        check_round_trip(dataset, tmp_path)
+
+
+def test_drawings_carry_their_labels(figure, line):
+    before = dict(mpl.rcParams)
+    shown = texts(draw.stability_maps({"(a) map": figure}, {"(a) map": 1.9}))
+    assert "safe zone" in shown
+    assert figure.attrs["labels"].split()[0] in shown
+    assert "safe zone" not in texts(draw.stability_maps({"(a) map": figure}, {"(a) map": None}))
+    assert "second" in texts(draw.compared_maps({"first": figure, "second": figure}))
+    assert "alone" in texts(draw.one_map(figure, "alone", 10.0))
+    assert "$N$ = 2" in texts(draw.convergence(line))
+    assert "(1, 3)" in texts(draw.plate_modes(disk_arrays.plate_modes(CASE_1, samples=9)))
+    stiffness = disk_arrays.stiffness_of_disk(CASE_1, [0.0, 1000.0])
+    assert "(b) II" in texts(draw.disk_stiffness({"(a) I": stiffness, "(b) II": stiffness}))
+    motion = disk_arrays.centroid_motion(CASE_1, [1.5, 3.0], samples=11)
+    assert "slow" in texts(draw.centroid_on_two_clocks(motion, ["fast", "slow"]))
+    assert dict(mpl.rcParams) == before
+
+
+def test_hsu_over_floquet(figure, tmp_path):
+    bands = arrays.hsu_bands(MODEL, "stiffness", [0.25], (500.0, 560.0), order=1)
+    check_round_trip(bands, tmp_path)
+    assert (bands["lower"] < bands["centre"]).all()
+    assert (bands["centre"] < bands["upper"]).all()
+    assert "Hsu, first order" in texts(draw.hsu_over_floquet(figure, bands))
