@@ -55,10 +55,10 @@ def root_stress(data: xr.Dataset, allowable: float) -> Figure:
     ax.axhline(allowable / 1e6, color=VERMILION, linestyle=":", linewidth=2)
     ax.annotate(
         rf"$\sigma_Y/SF$ = {allowable / 1e6:.0f} MPa",
-        (float(data["pinion_teeth"][-1]), allowable / 1e6),
+        (float(data["pinion_teeth"].mean()), allowable / 1e6),
         xytext=(0, 4),
         textcoords="offset points",
-        ha="right",
+        ha="center",
         color=VERMILION,
     )
     ax.set(xlabel=_TEETH, ylabel=r"$\sigma_{max}$ [MPa]", ylim=(0, None))
@@ -151,7 +151,8 @@ def _draw_row(ax: Axes, row: xr.Dataset, ratio: float, height: float, norm: Any)
     found = row.dropna("tongue")
     if found.sizes["tongue"] == 0:
         return
-    spans = [(float(t.lower), float(t.upper - t.lower)) for _, t in found.groupby("tongue")]
+    lower, upper = found["lower"].values, found["upper"].values
+    spans = list(zip(lower.tolist(), (upper - lower).tolist(), strict=True))
     ax.broken_barh(
         spans,
         (ratio - height / 2, height),
