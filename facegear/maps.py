@@ -31,7 +31,7 @@ from facegear.floquet import (
     transition_matrices,
 )
 from facegear.models import Model, is_whole_number, parameter_path, replace_parameter
-from facegear.parallel import computed
+from facegear.parallel import Workers, computed
 from facegear.parameters import finite_array, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
@@ -77,8 +77,9 @@ def stability_map(
         Method of :mod:`facegear.floquet`. If left out, contact-force collocation where the free motion allows it,
         else adaptive Magnus.
     jobs : int
-        Number of processes, as joblib's ``n_jobs``; -1 for all processors, or all workers of the backend that
-        ``joblib.parallel_config`` names. Each process uses one thread.
+        Number of workers, as joblib's ``n_jobs``; -1 for all processors, or all workers of the backend that
+        ``joblib.parallel_config`` names. On this machine they are threads where only load parameters change, else
+        processes.
     progress : bool, optional
         Show a progress bar; if left out, only on a terminal.
     cache_directory : path, optional
@@ -113,7 +114,9 @@ def stability_map(
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
     chunks = _chunks(sweep, speeds)
     radii = np.empty((values.size, speeds.size))
-    for number, result in computed(chunks, "stability map", jobs, progress, cache_directory):
+    # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
+    prefer: Workers = "threads" if all(isinstance(chunk, _LoadChunk) for chunk in chunks) else "processes"
+    for number, result in computed(chunks, "stability map", jobs, progress, cache_directory, prefer):
         radii[:, number * _CHUNK : number * _CHUNK + result.shape[1]] = result
     periods = np.concatenate([chunk.periods for chunk in chunks])
     error = _error_estimate(sweep, speeds, radii)

@@ -1,6 +1,6 @@
-"""Independent tasks shared out over processes, with results kept on disk.
+"""Independent tasks shared out over processes or threads, with results kept on disk.
 
-joblib runs them: by default in its own processes, or wherever ``joblib.parallel_config`` says, a Dask cluster for
+joblib runs them: by default on this machine, or wherever ``joblib.parallel_config`` says, a Dask cluster for
 example.
 """
 
@@ -14,11 +14,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from facegear.piecewise import Array
+
+Workers = Literal["processes", "threads"]
 
 
 class Task(Protocol):
@@ -39,6 +41,7 @@ def computed(
     jobs: int,
     progress: bool | None,
     cache_directory: str | os.PathLike[str] | None,
+    prefer: Workers = "processes",
 ) -> Iterator[tuple[int, Array]]:
     """Results of all tasks with their numbers, in the order in which they are there.
 
@@ -48,12 +51,15 @@ def computed(
     description : str
         For the progress bar.
     jobs : int
-        Number of processes, as joblib's ``n_jobs``; -1 for all processors or workers.
+        Number of workers, as joblib's ``n_jobs``; -1 for all processors or workers.
     progress : bool, optional
         Show a progress bar; if None, only on a terminal.
     cache_directory : path, optional
         Where results are kept, each written as soon as it is there, under a name that is a digest of all it depends
         on. A file that is damaged is not used.
+    prefer : {"processes", "threads"}
+        What the workers are on this machine. Threads start at once, and keep up where nearly all time goes into
+        large batches of NumPy's linear algebra.
 
     Yields
     ------
@@ -72,23 +78,30 @@ def computed(
             else:
                 bar.update()
                 yield number, kept
-        for number, result in _in_parallel([(number, tasks[number]) for number in waiting], jobs):
+        for number, result in _in_parallel([(number, tasks[number]) for number in waiting], jobs, prefer):
             if store is not None:
                 store.save(tasks[number], result)
             bar.update()
             yield number, result
 
 
-def _in_parallel(tasks: Sequence[tuple[int, Task]], jobs: int) -> Iterator[tuple[int, Array]]:
+def _in_parallel(
+    tasks: Sequence[tuple[int, Task]], jobs: int, prefer: Workers
+) -> Iterator[tuple[int, Array]]:
     """Run tasks where joblib says; a single one is not worth another process."""
     from joblib import Parallel, delayed, effective_n_jobs
     from joblib.parallel import get_active_backend
+    from threadpoolctl import threadpool_limits
 
     if len(tasks) == 1:
         yield _run(*tasks[0])
-    elif get_active_backend()[0].supports_return_generator:
+    elif get_active_backend(prefer=prefer)[0].supports_return_generator:
         work = (delayed(_run)(*task) for task in tasks)
-        yield from Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)(work)
+        # Threads share one limit: set before the first, or each would restore what another has set.
+        with threadpool_limits(limits=1):
+            yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
+                work
+            )
     else:
         # Such a backend answers when all is done: give it rounds, so that an interruption loses one only.
         size = 4 * effective_n_jobs(jobs)
