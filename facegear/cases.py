@@ -34,7 +34,7 @@ class StabilityFigure:
     body : Body
         Case I or Case II.
     load : MeshLoad
-        μ, ζ, τ of the caption; the swept one is a placeholder.
+        μ, ζ, τ of the caption; the axis of the map replaces the swept one.
     parameter : {"stiffness", "damping", "mass"}
         Parameter on the vertical axis.
     highest : float
