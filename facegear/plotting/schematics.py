@@ -20,6 +20,7 @@ from facegear.plotting.style import (
     GREY,
     INK,
     SKY,
+    STEEL,
     VERMILION,
     WIDTH,
     label_line,
@@ -29,7 +30,6 @@ from facegear.plotting.style import (
 from facegear.solids import Mesh
 
 _MM = 1e3
-_STEEL = "#B8C4CE"
 
 
 def _bare(axes: Axes) -> None:
@@ -87,7 +87,7 @@ def generation(pinion: Mesh, gear: Mesh) -> Figure:
     light = LightSource(azdeg=300, altdeg=45)
     # One collection for both bodies, so that they hide each other where they should.
     triangles = np.vstack([body.vertices[body.triangles] for body in (gear, pinion)]) * _MM
-    colours = np.repeat([to_rgb(_STEEL), to_rgb(SKY)], [len(gear.triangles), len(pinion.triangles)], axis=0)
+    colours = np.repeat([to_rgb(STEEL), to_rgb(SKY)], [len(gear.triangles), len(pinion.triangles)], axis=0)
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     normals = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
@@ -122,7 +122,7 @@ def shaper_profile(drive: Drive, outline: FloatArray, flank: FloatArray, step: i
     roll = drive.pinion_tip_roll * step / (len(flank) - 1)
     figure, (axes,) = panels(1, 1, 5.2)
     _bare(axes)
-    axes.fill(*(outline.T * _MM), facecolor=_STEEL, edgecolor=GREY, linewidth=0.9, alpha=0.7)
+    axes.fill(*(outline.T * _MM), facecolor=STEEL, edgecolor=GREY, linewidth=0.9, alpha=0.7)
     base, half = drive.base_radius * _MM, drive.space_half_angle
     span = (-np.pi / 2 - 0.36, -np.pi / 2 + 0.62)
     for radius, name in (
@@ -193,7 +193,7 @@ def coordinate_systems(drive: Drive, rotation: float) -> Figure:
     )
     pitch = 0.16
     side.fill([0.62, 1.0, 1.0, 0.62], [-pitch, -pitch, pitch, pitch], color=SKY, alpha=0.6)
-    side.fill([-0.98, 0.98, 0.98, -0.98], [-pitch - 0.14] * 2 + [-pitch] * 2, color=_STEEL)
+    side.fill([-0.98, 0.98, 0.98, -0.98], [-pitch - 0.14] * 2 + [-pitch] * 2, color=STEEL)
     side.add_patch(Arc((0, 0), 0.5, 0.5, theta1=0, theta2=np.degrees(np.pi - shaft), color=INK))
     side.text(0.22, 0.24, r"$\gamma_m$")
     side.add_patch(Arc((0, 0), 0.34, 0.34, theta1=-np.degrees(shaft), theta2=0, color=INK))
@@ -251,7 +251,7 @@ def limiting_ends(drive: Drive) -> Figure:
         at(0, blank + 5),
         at(inner, root),
     ]
-    axes.fill(*np.transpose(corners), color=_STEEL, alpha=0.9, zorder=0)
+    axes.fill(*np.transpose(corners), color=STEEL, alpha=0.9, zorder=0)
     axes.plot(
         *np.transpose([at(inner, top), at(outer, top), at(outer, root), at(inner, root), at(inner, top)]),
         color=INK,

@@ -17,6 +17,7 @@ R = TypeVar("R")
 # Okabe and Ito's palette, in the order in which it is used for lines.
 BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7"
 INK, GREY, FAINT = "#222222", "#767676", "#D9D9D9"
+STEEL = "#B8C4CE"  # bodies of gears
 
 # Inches; the text column of the book is about 7.3 in wide at 100 dpi.
 WIDTH = 7.2

@@ -21,8 +21,8 @@ from facegear import ContactPath
 from facegear.cases import CASE_1, CASE_2, FIGURES
 from facegear.models import replace_parameter
 from tests.independent import meshing_mpmath
-from tests.independent.complex_galerkin import ComplexDisk, Pinion, multipliers
-from tests.test_transverse import momentum_multipliers
+from tests.independent.complex_galerkin import Pinion, multipliers
+from tests.test_transverse import complex_disk, momentum_multipliers
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "anchors"
 ROUTE = (
@@ -67,29 +67,11 @@ def rpm(value):
 
 
 @cache
-def disk(body):
-    def radial(m, n, r):
-        return body.modes[n](r / body.outer_radius)[m] / body.outer_radius
-
-    steel = body.material
-    return ComplexDisk(
-        radial,
-        M=body.nodal_circles,
-        N=body.nodal_diameters,
-        a=body.outer_radius,
-        b=body.bore_radius,
-        h=body.thickness,
-        E=steel.youngs_modulus,
-        rho=steel.density,
-        nu=steel.poissons_ratio,
-        xi=steel.viscous_loss_factor,
-    )
-
-
-@cache
 def reference_stiffness(body):
     middle = (body.drive.inner_radius + body.drive.outer_radius) / 2
-    return float(np.mean([disk(body).stiffness_at(middle, v) for v in np.linspace(0, rpm(1000.0), 101)]))
+    return float(
+        np.mean([complex_disk(body).stiffness_at(middle, v) for v in np.linspace(0, rpm(1000.0), 101)])
+    )
 
 
 def nominal_mass(body):
@@ -113,7 +95,7 @@ def spectral_radius(
     k_b = stiffness * reference_stiffness(body if reference is None else reference)
     period = 2 * np.pi / (body.drive.gear_teeth * rpm(speed_rpm))
     found = multipliers(
-        disk(body),
+        complex_disk(body),
         [pinion(body, contact_ratio, sense)],
         rpm(speed_rpm),
         period,
@@ -185,7 +167,7 @@ def masses():
 
 def mean_frequencies(body, speed, *, stiffness, damping, mass):
     """Natural frequencies of the complex form with M(t), C(t), K(t) replaced by their means over a period."""
-    plate, contact = disk(body), pinion(body, None, 1)
+    plate, contact = complex_disk(body), pinion(body, None, 1)
     M, C, K = plate.constant_matrices(rpm(speed))
     n = np.repeat(plate.waves, plate.M + 1)
     points, weights = np.polynomial.legendre.leggauss(40)
@@ -280,7 +262,7 @@ def stiffness(body):
     radii = (body.drive.inner_radius, (body.drive.inner_radius + body.drive.outer_radius) / 2)
     for speed in (0.0, 500.0, 1000.0):
         for place, radius in zip((0.0, 0.5), radii, strict=True):
-            value = disk(body).stiffness_at(radius, rpm(speed))
+            value = complex_disk(body).stiffness_at(radius, rpm(speed))
             yield anchor("stiffness", value, 1e-8 * value, place=place, speed_rpm=speed)
     yield anchor("reference", reference_stiffness(body), 1e-8 * reference_stiffness(body))
 
