@@ -29,8 +29,9 @@ _PUBLIC = {
     # models and maps
     "replace_parameter": "models",
     "stability_map": "maps",
-    "Tongue": "tongues",
-    "borders": "tongues",
+    "Tongue": "tracing",
+    "borders": "tracing",
+    "tongues": "tracing",
     # plate, transverse
     "Body": "plate",
     "Transverse": "transverse",

@@ -2,7 +2,7 @@
 
 The critical thickness ratio of a drive is the smallest h/a above which it is stable at every operating speed. It is
 the highest tip of all lobes of instability in the chart of speed and thickness. Tips are sharp, so they are not
-looked for on a grid: :func:`facegear.tongues.tongues` finds every tongue at a few thicknesses, from above, and each
+looked for on a grid: :func:`facegear.tracing.tongues` finds every tongue at a few thicknesses, from above, and each
 is then followed to the thickness at which its largest growth rate vanishes.
 """
 
@@ -21,7 +21,7 @@ from facegear.models import Model
 from facegear.multiplier_curves import method_for
 from facegear.parameters import MeshLoad, integer_at_least, positive, within
 from facegear.plate import THICKNESS_RATIO_RANGE, Body
-from facegear.tongues import Tongue, tongues
+from facegear.tracing import Tongue, tongues
 from facegear.transverse import Transverse
 
 MODULE = 25.4e-3 / 8
@@ -167,7 +167,7 @@ class Lobe:
     speed : float
         Ω2 there [rad/s]; an end of the speed range where the lobe is cut off by it.
     label : str
-        Modes and order, as :attr:`facegear.tongues.Tongue.label`.
+        Modes and order, as :attr:`facegear.tracing.Tongue.label`.
     """
 
     thickness_ratio: float

@@ -27,7 +27,7 @@ from facegear.parameters import FloatArray, integer_at_least, rpm
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
 from facegear.reference import variable
-from facegear.tongues import tongues
+from facegear.tracing import tongues
 from facegear.transverse import Transverse, shape_vector
 
 # Tips are traced to 1e-5 in h/a; the speed of a maximum follows to the root of the accuracy of its height.

@@ -6,7 +6,7 @@ Where other matrices change, they are interpolated along the parameter as far as
 cell by cell where they are not. Columns are shared out in chunks over processes by joblib.
 
 What falls between the columns of a map, tongues narrower than their distance, is found by
-:func:`facegear.tongues.tongues`, which belongs to this module's public names.
+:func:`facegear.tracing.tongues`, which belongs to this module's public names.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from facegear.parameters import finite_array, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
 from facegear.stepping import Family
-from facegear.tongues import borders, tongues
+from facegear.tracing import borders, tongues
 
 if TYPE_CHECKING:
     import xarray

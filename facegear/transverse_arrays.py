@@ -20,7 +20,7 @@ from facegear.maps import stability_map
 from facegear.models import replace_parameter
 from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
 from facegear.reference import variable
-from facegear.tongues import Tongue, borders, tongues
+from facegear.tracing import Tongue, borders, tongues
 from facegear.transverse import Transverse, reference_stiffness
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)

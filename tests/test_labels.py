@@ -10,7 +10,7 @@ from facegear.parameters import MeshLoad, rad_per_s
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
-from facegear.tongues import tongues
+from facegear.tracing import tongues
 from facegear.transverse import Transverse
 
 TURN = 2.0 * np.pi

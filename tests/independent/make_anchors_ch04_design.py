@@ -15,7 +15,7 @@ from tqdm import tqdm
 
 import facegear as fg
 from facegear.design import constant_diametral_pitch, constant_pitch_radius
-from facegear.tongues import tongues
+from facegear.tracing import tongues
 from tests.independent import meshing_mpmath
 from tests.independent.make_anchors_ch04 import FOLDER, ROUTE, anchor, rpm, spectral_radius
 

@@ -16,7 +16,7 @@ from facegear.parameters import MeshLoad, rad_per_s, rpm
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
-from facegear.tongues import borders, tongues
+from facegear.tracing import borders, tongues
 from facegear.transverse import Transverse
 
 TURN = 2.0 * np.pi
