@@ -130,6 +130,22 @@ def disk_matrices(body: Body, speed: ArrayLike) -> tuple[FloatArray, FloatArray]
     if np.any(omega < 0):
         raise ValueError(f"speed must be 0 or greater in rad/s, got {speed!r}")
     xi = body.material.viscous_loss_factor
+    elastic, derivative, centrifugal = _disk_terms(body)
+    return xi * elastic + 2 * omega * derivative, elastic + omega**2 * centrifugal + xi * omega * (
+        elastic @ derivative
+    )
+
+
+@lru_cache(maxsize=64)
+def _disk_terms(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What the matrices of the disk are made of at any speed.
+
+    Returns
+    -------
+    ndarray, each of shape (n, n)
+        Squares of the natural frequencies [1/s²], ∂/∂θ [-], and what Ω2² multiplies: centrifugal stiffness with
+        the part of ẅ that is ∂²/∂θ² [-].
+    """
     circles = np.eye(body.nodal_circles + 1)
     # ∂/∂θ takes the pair (A, B) of A cos nθ + B sin nθ to n (B, -A).
     turning = np.array([[0.0, 1.0], [-1.0, 0.0]])
@@ -139,8 +155,11 @@ def disk_matrices(body: Body, speed: ArrayLike) -> tuple[FloatArray, FloatArray]
         elastic.append(np.tile(body.eigenvalues[:, n], waves))
         centrifugal.append(np.kron(np.eye(waves), centrifugal_stiffness(modes)))
         derivative.append(np.kron(n * turning[:waves, :waves], circles))
-    E, L, T = np.diag(np.concatenate(elastic)), block_diag(*centrifugal), block_diag(*derivative)
-    return xi * E + 2 * omega * T, E + omega**2 * (L + T @ T) + xi * omega * E @ T
+    T = block_diag(*derivative)
+    terms = np.diag(np.concatenate(elastic)), T, block_diag(*centrifugal) + T @ T
+    for term in terms:
+        term.setflags(write=False)
+    return terms
 
 
 def disk_stiffness(body: Body, speed: ArrayLike, radius: float) -> FloatArray:
