@@ -32,8 +32,9 @@ _PUBLIC = {
     "Tongue": "tracing",
     "borders": "tracing",
     "tongues": "tracing",
-    # plate, transverse
+    # plate, inplane, transverse
     "Body": "plate",
+    "EdgeLoadStress": "inplane",
     "Transverse": "transverse",
     # periodic, floquet
     "ContactLoad": "periodic",

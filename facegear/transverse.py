@@ -1,4 +1,4 @@
-"""Transverse vibration of a face gear with one or more spur pinions (chapters 4 and 5).
+"""Transverse vibration of a face gear with one or more spur pinions (chapters 4 to 6).
 
 The disk is discretised by its own modes. With w = Σ R_mn(r) e^{inθ} η_mn (4-5) and η_-n the conjugate of η_n,
 each pair ±n becomes √2 R_mn (A_mn cos nθ + B_mn sin nθ): as many real coordinates as complex ones, the same
@@ -24,11 +24,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
+from facegear.inplane import Following, driving_force, unit_stiffness
 from facegear.kinematics import ContactPath, mesh_period, phase_split
 from facegear.parameters import (
     FloatArray,
     MeshLoad,
     finite_array,
+    integer_at_least,
     positive,
     rad_per_s,
     within,
@@ -310,7 +312,7 @@ def mirrored(body: Body, shape: PiecewiseChebyshev) -> PiecewiseChebyshev:
 
 @dataclass(frozen=True)
 class Transverse:
-    """Transverse vibration of a face gear under one or more equal pinions (4-8, 5-6).
+    """Transverse vibration of a face gear under one or more equal pinions (4-8, 5-6, 6-25).
 
     Parameters
     ----------
@@ -331,6 +333,13 @@ class Transverse:
         Whether the disk turns towards growing θ while the contact turns towards falling θ, (4-1) and section
         3.6 as printed, or contact, disk and the order in which a tooth meets the pinions agree ("with_disk":
         all angles against the disk's rotation).
+    power, power_speed : float, optional
+        Power [W] that each pinion brings in at its speed `power_speed` [rad/s], 0 or greater and greater than 0.
+        They set the driving force in the plane of the disk (4-21), the same at every speed. Default: no such force.
+    following : {"follower", "dead"}
+        Whether the driving force stays tangent to the bent rim, as printed, or keeps its direction.
+    stress_harmonics : int
+        Largest harmonic of the stress under the driving force. Default 5, as printed; 2N couples all modes.
 
     Raises
     ------
@@ -352,6 +361,10 @@ class Transverse:
     contact_ratio: float | None = None
     rate: Rate = "frozen"
     travel: Travel = "printed"
+    power: float | None = None
+    power_speed: float | None = None
+    following: Following = "follower"
+    stress_harmonics: int = 5
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
@@ -362,6 +375,14 @@ class Transverse:
             raise ValueError(f"rate must be 'frozen' or 'total', got {self.rate!r}")
         if self.travel not in ("printed", "with_disk"):
             raise ValueError(f"travel must be 'printed' or 'with_disk', got {self.travel!r}")
+        if (self.power is None) != (self.power_speed is None):
+            raise ValueError(
+                f"power and power_speed go together, got power={self.power!r}, power_speed={self.power_speed!r}"
+            )
+        if self.following not in ("follower", "dead"):
+            raise ValueError(f"following must be 'follower' or 'dead', got {self.following!r}")
+        integer_at_least("stress_harmonics", self.stress_harmonics, 0)
+        _ = self.driving_force
         # Fails here rather than at the first use if the contact ratio is not valid.
         object.__setattr__(self, "contact_ratio", _path(self.body, self.contact_ratio).contact_ratio)
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
@@ -389,6 +410,13 @@ class Transverse:
     def pinion_mass(self) -> float:
         """m_p = τ times the nominal pinion mass [kg] (4-19)."""
         return self.load.mass * nominal_pinion_mass(self.body)
+
+    @property
+    def driving_force(self) -> float:
+        """F_t of each pinion [N] (4-21), 0 without a power."""
+        if self.power is None or self.power_speed is None:
+            return 0.0
+        return driving_force(self.body, self.power, self.power_speed)
 
     @cached_property
     def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
@@ -424,6 +452,11 @@ class Transverse:
         """
         speed = positive("speed", speed, "rad/s")
         damping, stiffness = disk_matrices(self.body, speed)
+        if self.driving_force:
+            sense = -1.0 if self.travel == "with_disk" else 1.0
+            angles = tuple(sense * angle for angle in self.pinion_angles)
+            unit = unit_stiffness(self.body, speed, self.stress_harmonics, self.following, angles)
+            stiffness = stiffness + self.driving_force * unit
         scale = _modal_mass(self.body)
         stiffness_b, damping_b, mass_p = (
             value / scale for value in (self.bearing_stiffness, self.bearing_damping, self.pinion_mass)
