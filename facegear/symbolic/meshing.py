@@ -13,6 +13,7 @@ from functools import cache
 from typing import Any
 
 import sympy as sp
+from sympy.simplify.fu import TR5
 
 # Quantities with a sign known in advance are declared so: square roots then simplify without help.
 r_bs = sp.Symbol("r_bs", positive=True)  # radius of the shaper's base circle [m]
@@ -84,7 +85,8 @@ def shaper_normal() -> Any:
     """Derive the normal n_s of the shaper's flank in Γs, of length one (3-3): ∂r/∂θ × ∂r/∂u, shape (3, 1)."""
     surface = shaper_surface()
     cross = surface.diff(theta_s).cross(surface.diff(u_s)).expand()
-    length = sp.sqrt(sp.trigsimp((cross.T * cross)[0]))
+    # TR5: sin² = 1 − cos², all that is needed here, where trigsimp would try everything it knows.
+    length = sp.sqrt(sp.expand(TR5(sp.expand((cross.T * cross)[0]))))
     return (cross / length).applyfunc(sp.cancel).as_immutable()
 
 
@@ -164,7 +166,8 @@ def _combine_angles(expression: Any) -> Any:
 @cache
 def meshing_position() -> Any:
     """Coordinate u_s along the shaper's axis that solves f = 0 (3-7) [m]."""
-    return sp.solve(equation_of_meshing(), u_s)[0]
+    f = equation_of_meshing()  # linear in u_s
+    return sp.factor(-f.subs(u_s, 0)) / f.diff(u_s)
 
 
 @cache
@@ -281,8 +284,7 @@ def contact_point() -> Any:
 
     def contract(component: Any) -> Any:
         # θ0s drops out: only the sum of the angles matters to the rotated involute.
-        contracted = sp.trigsimp(sp.expand_trig(component.subs(theta_0s, -theta_s)))
-        return sp.expand(contracted)
+        return sp.expand(component.subs(theta_0s, -theta_s))
 
     return position.applyfunc(contract).as_immutable()
 
