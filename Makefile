@@ -8,7 +8,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help environment book chapter test test-slow test-book lint format bench references clean
+.PHONY: help environment book chapter test test-slow test-book lint format explorer bench references clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -43,6 +43,9 @@ format: environment ## put code and notebooks into their committed form
 	$(PYTHON) -m ruff check --fix .
 	$(PYTHON) -m ruff format .
 	$(PYTHON) -m nbstripout --keep-id --extra-keys '$(STRIPPED)' notebooks/*.ipynb
+
+explorer: environment ## open the live explorer in a browser (Voilà on this machine)
+	@$(PYTHON) -m voila notebooks/explorer.ipynb
 
 bench: environment ## measure the performance table
 	@for file in benchmarks/bench_*.py; do $(PYTHON) -m benchmarks.$$(basename $$file .py) || exit 1; done
