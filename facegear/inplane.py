@@ -23,7 +23,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.parameters import FloatArray, finite, finite_array, integer_at_least, nonnegative, within
+from facegear.disk import unit_shape
+from facegear.parameters import FloatArray, finite_array, integer_at_least, nonnegative, positive, within
 from facegear.plate import Body, plate_quadrature
 
 Direction = Literal["tangential", "radial"]
@@ -324,7 +325,7 @@ def complete_harmonics(body: Body) -> int:
 class _Grid:
     """Basis functions at the nodes of a quadrature over the disk, and along its rim, on unit outer radius.
 
-    Values and slopes have the shape (n, radii, angles) on the disk and (n, angles) along the rim. `weights` (radii,)
+    Values and slopes have the shape (radii, angles, n) on the disk and (angles, n) along the rim. `weights` (radii,)
     are those of ∫ x dx, averages over the angles are sums over their number.
     """
 
@@ -345,27 +346,16 @@ def _grid(body: Body, harmonics: int) -> _Grid:
     count = complete_harmonics(body) + harmonics + 1
     angles = 2 * np.pi * np.arange(count) / count
 
-    def basis(at: FloatArray, derivative: int, turned: int) -> FloatArray:
-        """φ or a derivative of it in x and θ, shape (n, radii, angles)."""
-        rows = []
-        for n, modes in enumerate(body.modes):
-            value = modes(at, derivative)[:, :, np.newaxis]
-            cosine, sine = np.cos(n * angles), np.sin(n * angles)
-            if turned:
-                cosine, sine = -n * sine, n * cosine
-            rows += [math.sqrt(2) * value * cosine, math.sqrt(2) * value * sine] if n else [value * cosine]
-        return np.concatenate(rows)
-
-    rim = np.array([1.0])
+    modes, radii, rim = body.modes, x[:, np.newaxis], np.ones(count)
     return _Grid(
         x,
         weights,
         angles,
-        basis(x, 1, 0),
-        basis(x, 0, 1),
-        basis(rim, 0, 0)[:, 0],
-        basis(rim, 1, 0)[:, 0],
-        basis(rim, 0, 1)[:, 0],
+        unit_shape(modes, radii, angles, by_radius=1),
+        unit_shape(modes, radii, angles, by_angle=1),
+        unit_shape(modes, rim, angles),
+        unit_shape(modes, rim, angles, by_radius=1),
+        unit_shape(modes, rim, angles, by_angle=1),
     )
 
 
@@ -383,7 +373,7 @@ def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower
     Returns
     -------
     ndarray, shape (n, n)
-        K_f [1/s²], divided by 2πρh as all matrices of (4-8); coordinates as :func:`facegear.transverse.coordinates`.
+        K_f [1/s²], divided by 2πρh as all matrices of (4-8); coordinates as :func:`facegear.disk.coordinates`.
 
     Raises
     ------
@@ -407,15 +397,16 @@ def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower
     weights = grid.weights[:, np.newaxis] / grid.angles.size
     x = grid.x[:, np.newaxis]
     # σ·grad φ: radial and circumferential part
-    first = weights * (radial * grid.by_radius + shear * grid.by_angle / x)
-    second = weights * (shear * grid.by_radius + hoop * grid.by_angle / x) / x
-    n = len(grid.rim)
-    stiffness = grid.by_radius.reshape(n, -1) @ first.reshape(n, -1).T
-    stiffness += grid.by_angle.reshape(n, -1) @ second.reshape(n, -1).T
+    first = np.einsum("ra,ran->ran", weights * radial, grid.by_radius)
+    first += np.einsum("ra,ran->ran", weights * shear / x, grid.by_angle)
+    second = np.einsum("ra,ran->ran", weights * shear / x, grid.by_radius)
+    second += np.einsum("ra,ran->ran", weights * hoop / x**2, grid.by_angle)
+    stiffness = np.tensordot(grid.by_radius, first, axes=((0, 1), (0, 1)))
+    stiffness += np.tensordot(grid.by_angle, second, axes=((0, 1), (0, 1)))
     if following == "follower":
         radial, shear, _ = used.field(body.outer_radius, grid.angles)
-        slope = (radial * grid.rim_by_radius + shear * grid.rim_by_angle) / grid.angles.size
-        stiffness -= grid.rim @ slope.T
+        slope = radial[:, np.newaxis] * grid.rim_by_radius + shear[:, np.newaxis] * grid.rim_by_angle
+        stiffness -= grid.rim.T @ slope / grid.angles.size
     found: FloatArray = stiffness / (body.material.density * body.outer_radius**2)
     return found
 
@@ -463,7 +454,5 @@ def driving_force(body: Body, power: float, pinion_speed: float) -> float:
     TypeError, ValueError
         If an argument is not a number in its range.
     """
-    speed = finite("power_speed", pinion_speed, "rad/s")
-    if speed <= 0.0:
-        raise ValueError(f"power_speed must be greater than 0 in rad/s, got {pinion_speed!r} rad/s")
+    speed = positive("power_speed", pinion_speed, "rad/s")
     return nonnegative("power", power, "W") / (speed * body.drive.pitch_radius)

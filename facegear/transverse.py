@@ -1,9 +1,6 @@
 """Transverse vibration of a face gear with one or more spur pinions (chapters 4 to 6).
 
-The disk is discretised by its own modes. With w = Σ R_mn(r) e^{inθ} η_mn (4-5) and η_-n the conjugate of η_n,
-each pair ±n becomes √2 R_mn (A_mn cos nθ + B_mn sin nθ): as many real coordinates as complex ones, the same
-motion, and nothing rescaled (:mod:`facegear.symbolic.galerkin` derives it). The deflection is w = φ(r, θ)ᵀq;
-the equations are divided by 2πρh, as in (4-8), so that the mass matrix of the disk is the identity.
+Disk and coordinates are those of :mod:`facegear.disk`.
 
 Two things about θ_c are easily lost. Tregold's contact ratio compresses the sweep of the contact with the
 rotation that belongs to it, so that the contact still turns nearly as fast as the face gear (section 3.7):
@@ -18,12 +15,21 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
+from facegear.disk import (
+    Coordinate,
+    coordinates,
+    disk_matrices,
+    disk_stiffness,
+    modal_mass,
+    reference_stiffness,
+    shape_vector,
+    unit_shape,
+)
 from facegear.inplane import Following, driving_force, unit_stiffness
 from facegear.kinematics import ContactPath, mesh_period, phase_split
 from facegear.parameters import (
@@ -32,189 +38,28 @@ from facegear.parameters import (
     finite_array,
     integer_at_least,
     positive,
-    rad_per_s,
     within,
 )
 from facegear.periodic import ContactLoad, PeriodicSystem, Rate
 from facegear.piecewise import PiecewiseChebyshev
-from facegear.plate import Body, RadialModes, centrifugal_stiffness
+from facegear.plate import Body, RadialModes
+
+__all__ = [
+    "Coordinate",
+    "Transverse",
+    "contact_centroid",
+    "contact_shape",
+    "coordinates",
+    "disk_matrices",
+    "disk_stiffness",
+    "mirrored",
+    "nominal_pinion_mass",
+    "reference_stiffness",
+    "rotated",
+    "shape_vector",
+]
 
 Travel = Literal["printed", "with_disk"]
-
-REFERENCE_SPEED = float(rad_per_s(1000.0))
-"""End of the speed range over which the reference stiffness is averaged [rad/s of the face gear]."""
-REFERENCE_SAMPLES = 101
-
-
-class Coordinate(NamedTuple):
-    """One generalised coordinate of the disk."""
-
-    nodal_circles: int
-    nodal_diameters: int
-    wave: str
-    """"cos" or "sin"."""
-
-
-def coordinates(body: Body) -> tuple[Coordinate, ...]:
-    """Generalised coordinates of the disk, in the order of all matrices and shape vectors.
-
-    Parameters
-    ----------
-    body : Body
-
-    Returns
-    -------
-    tuple of Coordinate, length (M + 1)(2N + 1)
-        By nodal diameters, cosine before sine, then by nodal circles.
-    """
-    return tuple(
-        Coordinate(m, n, wave)
-        for n in range(body.nodal_diameters + 1)
-        for wave in (("cos", "sin") if n else ("cos",))
-        for m in range(body.nodal_circles + 1)
-    )
-
-
-def shape_vector(body: Body, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
-    """Shape vector φ of the real basis: the deflection at a point is w = φᵀq.
-
-    Parameters
-    ----------
-    body : Body
-    radius : array_like
-        r [m], between bore and rim.
-    angle : array_like
-        θ [rad]; broadcast against `radius`.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-        R_m0, √2 R_mn cos nθ and √2 R_mn sin nθ [1/m].
-
-    Raises
-    ------
-    ValueError
-        If a radius lies off the disk.
-    """
-    return _shape(body.modes, np.divide(radius, body.outer_radius), angle) / body.outer_radius
-
-
-def _shape(modes: tuple[RadialModes, ...], x: ArrayLike, angle: ArrayLike) -> FloatArray:
-    """Shape vector on unit outer radius, shape (..., n)."""
-    x, angle = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(angle, dtype=float))
-    parts = [modes[0](x)]
-    for n, radial in enumerate(modes[1:], start=1):
-        value = math.sqrt(2) * radial(x)
-        parts += [value * np.cos(n * angle), value * np.sin(n * angle)]
-    return np.moveaxis(np.concatenate(parts), 0, -1)
-
-
-def disk_matrices(body: Body, speed: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Damping and stiffness of the spinning disk in the space-fixed frame (4-9, 4-11), real basis.
-
-    Parameters
-    ----------
-    body : Body
-    speed : array_like
-        Ω2 [rad/s], 0 or greater.
-
-    Returns
-    -------
-    damping, stiffness : ndarray, shape (..., n, n)
-        C0 [1/s] and K0 [1/s²] for each speed; the mass matrix is the identity.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a speed is not a finite number of 0 or greater.
-    """
-    omega = finite_array("speed", speed, "rad/s")[..., np.newaxis, np.newaxis]
-    if np.any(omega < 0):
-        raise ValueError(f"speed must be 0 or greater in rad/s, got {speed!r}")
-    xi = body.material.viscous_loss_factor
-    elastic, derivative, centrifugal = _disk_terms(body)
-    return xi * elastic + 2 * omega * derivative, elastic + omega**2 * centrifugal + xi * omega * (
-        elastic @ derivative
-    )
-
-
-@lru_cache(maxsize=64)
-def _disk_terms(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What the matrices of the disk are made of at any speed.
-
-    Returns
-    -------
-    ndarray, each of shape (n, n)
-        Squares of the natural frequencies [1/s²], ∂/∂θ [-], and what Ω2² multiplies: centrifugal stiffness with
-        the part of ẅ that is ∂²/∂θ² [-].
-    """
-    circles = np.eye(body.nodal_circles + 1)
-    # ∂/∂θ takes the pair (A, B) of A cos nθ + B sin nθ to n (B, -A).
-    turning = np.array([[0.0, 1.0], [-1.0, 0.0]])
-    elastic, centrifugal, derivative = [], [], []
-    for n, modes in enumerate(body.modes):
-        waves = 2 if n else 1
-        elastic.append(np.tile(body.eigenvalues[:, n], waves))
-        centrifugal.append(np.kron(np.eye(waves), centrifugal_stiffness(modes)))
-        derivative.append(np.kron(n * turning[:waves, :waves], circles))
-    T = block_diag(*derivative)
-    terms = np.diag(np.concatenate(elastic)), T, block_diag(*centrifugal) + T @ T
-    for term in terms:
-        term.setflags(write=False)
-    return terms
-
-
-def disk_stiffness(body: Body, speed: ArrayLike, radius: float) -> FloatArray:
-    """Stiffness of the spinning disk against a force at rest in space (4-14 to 4-16).
-
-    Parameters
-    ----------
-    body : Body
-    speed : array_like
-        Ω2 [rad/s], 0 or greater.
-    radius : float
-        r_d [m] where the force acts.
-
-    Returns
-    -------
-    ndarray
-        k_d, force over steady deflection under it [N/m], of the shape of `speed`.
-    """
-    _, stiffness = disk_matrices(body, speed)
-    shape = shape_vector(body, radius, 0.0)
-    compliance: FloatArray = np.linalg.solve(stiffness, shape[:, np.newaxis])[..., 0] @ shape
-    return _modal_mass(body) / compliance
-
-
-def _modal_mass(body: Body) -> float:
-    """2πρh, by which (4-8) divides every load [kg/m²]."""
-    return 2 * math.pi * body.material.density * body.thickness
-
-
-@lru_cache(maxsize=256)
-def reference_stiffness(body: Body, highest_speed: float = REFERENCE_SPEED) -> float:
-    """Stiffness of the disk that bearing stiffnesses are measured by (denominator of 4-17).
-
-    Parameters
-    ----------
-    body : Body
-    highest_speed : float
-        End of the range of Ω2 [rad/s] over which 101 equally spaced values are averaged.
-
-    Returns
-    -------
-    float
-        Average of k_d at radius (R1 + R2)/2 [N/m].
-
-    Examples
-    --------
-    >>> from facegear.geometry import Drive
-    >>> f"{reference_stiffness(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)):.4e}"
-    '1.0343e+06'
-    """
-    radius = (body.drive.inner_radius + body.drive.outer_radius) / 2
-    speeds = np.linspace(0.0, positive("highest_speed", highest_speed, "rad/s"), REFERENCE_SAMPLES)
-    return float(np.mean(disk_stiffness(body, speeds, radius)))
 
 
 def nominal_pinion_mass(body: Body) -> float:
@@ -275,7 +120,7 @@ def contact_shape(modes: tuple[RadialModes, ...], path: ContactPath) -> Piecewis
 
     def shape(fraction: FloatArray, piece: int) -> FloatArray:
         x, angle = np.moveaxis(centroid(fraction), -1, 0)
-        return _shape(modes, x, angle) / path.drive.outer_radius
+        return unit_shape(modes, x, angle) / path.drive.outer_radius
 
     return PiecewiseChebyshev.fit(shape, centroid.breakpoints)
 
@@ -457,7 +302,7 @@ class Transverse:
             angles = tuple(sense * angle for angle in self.pinion_angles)
             unit = unit_stiffness(self.body, speed, self.stress_harmonics, self.following, angles)
             stiffness = stiffness + self.driving_force * unit
-        scale = _modal_mass(self.body)
+        scale = modal_mass(self.body)
         stiffness_b, damping_b, mass_p = (
             value / scale for value in (self.bearing_stiffness, self.bearing_damping, self.pinion_mass)
         )
