@@ -36,6 +36,10 @@ _PUBLIC = {
     "Body": "plate",
     "EdgeLoadStress": "inplane",
     "Transverse": "transverse",
+    # torsional
+    "Gearbox": "torsional",
+    "Torsional": "torsional",
+    "natural_speed": "torsional",
     # periodic, floquet
     "ContactLoad": "periodic",
     "PeriodicSystem": "periodic",
