@@ -17,6 +17,7 @@ H, F, E, G do not depend on k, c, m, so a whole column of a map shares them.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -36,6 +37,8 @@ DEFAULT_PANEL_ANGLE = 9.0
 PANEL_TOLERANCE = 1e-12
 # Rounds of halving before a system is refused.
 _MOST_HALVINGS = 8
+# Panels of one system are tried on others that turn by at least this part of its angle in a period.
+_SHARED = 0.6
 
 
 class UnsuitableSystemError(ValueError):
@@ -242,6 +245,8 @@ class FreeMotion:
         Gauss nodes a panel.
     panel_angle : float
         Largest product of fastest frequency and panel length [rad].
+    edges : array, optional
+        Ends of panels to begin with, all breakpoints among them; chosen by `panel_angle` if left out.
 
     Raises
     ------
@@ -255,6 +260,7 @@ class FreeMotion:
         column: LoadColumn,
         nodes: int = DEFAULT_NODES,
         panel_angle: float = DEFAULT_PANEL_ANGLE,
+        edges: Array | None = None,
     ) -> None:
         self.system = system
         self.modes = FreeModes.of(system)
@@ -264,13 +270,19 @@ class FreeMotion:
         )
         stiffest = float((column.stiffness @ self.mobility).max(initial=0.0))
         fastest = float(np.hypot(np.abs(self.modes.eigenvalues).max(), np.sqrt(stiffest)))
-        self.edges = _panel_edges(system.breakpoints, fastest * system.period, panel_angle)
+        if edges is None:
+            edges = _panel_edges(system.breakpoints, fastest * system.period, panel_angle)
+        self.edges = edges
         self.panels = _build(system, self.modes, nodes, self.edges)
-        self._halve_unresolved_panels(column.extremes(), nodes)
+        extremes = column.extremes()
+        forces = self._halve_unresolved_panels(extremes, nodes)
+        self._known = (extremes, forces)
         self.kicks = self._kick_data()
 
-    def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> None:
+    def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> Array:
         """Halve panels until the contact forces of all initial states are resolved at the given values.
+
+        Returns these forces.
 
         The state at the end of a panel converges twice as fast as the force along it: if the last Legendre
         coefficients of the force are ε of its size, ε² is left of its effect.
@@ -290,7 +302,7 @@ class FreeMotion:
             error = (effect[:, None] * size * relative**2).max(axis=(0, 2), initial=0.0)
             unresolved = error > PANEL_TOLERANCE
             if not unresolved.any():
-                return
+                return force
             middle = (self.edges[:-1] + self.edges[1:]) / 2.0
             self.edges = np.sort(np.concatenate([self.edges, middle[unresolved]]))
             self.panels = _build(self.system, self.modes, nodes, self.edges)
@@ -339,7 +351,10 @@ class FreeMotion:
         return np.asarray(np.linalg.solve(left, right), dtype=float)
 
     def _chunk(self, column: LoadColumn) -> Array:
-        steps = self.panels.free - self.panels.input @ self._forces(column)
+        known, forces = self._known
+        if not np.array_equal(known.stacked(), column.stacked()):
+            forces = self._forces(column)
+        steps = self.panels.free - self.panels.input @ forces
         for panel, matrices in self._kicks(column).items():
             steps[:, panel] = steps[:, panel] @ matrices
         return chain(steps)
@@ -387,14 +402,15 @@ def is_suitable(system: PeriodicSystem) -> bool:
     return True
 
 
-def transition_matrix(
-    system: PeriodicSystem, nodes: int = DEFAULT_NODES, panel_angle: float = DEFAULT_PANEL_ANGLE
+def transition_matrices(
+    systems: Sequence[PeriodicSystem], nodes: int = DEFAULT_NODES, panel_angle: float = DEFAULT_PANEL_ANGLE
 ) -> Array:
-    """Floquet transition matrix of the state (q, q̇), shape (2n, 2n).
+    """Floquet transition matrices of the state (q, q̇), shape (V, 2n, 2n).
 
     Parameters
     ----------
-    system : PeriodicSystem
+    systems : sequence of PeriodicSystem
+        With common size and breakpoints.
     nodes : int
         Gauss nodes a panel.
     panel_angle : float
@@ -405,7 +421,17 @@ def transition_matrix(
     UnsuitableSystemError
         If the free motion has rigid-body, overdamped or defective modes.
     """
-    column = LoadColumn.of(system)
-    motion = FreeMotion(system, column, nodes, panel_angle)
-    matrix = motion.transition_matrices(column)[0]
-    return np.asarray(motion.modes.state_from_real() @ matrix @ motion.modes.real_from_state(), dtype=float)
+    # Panels that resolve one system resolve all that turn a little less in a period, which saves the search.
+    turns = np.array([system.period * np.sqrt(np.abs(system.stiffness).max()) for system in systems])
+    matrices: list[Array] = [np.empty(0)] * len(systems)
+    leading, edges = 0.0, None
+    for number in np.argsort(-turns).tolist():
+        if turns[number] < _SHARED * leading or edges is None:
+            leading, edges = turns[number], None
+        column = LoadColumn.of(systems[number])
+        motion = FreeMotion(systems[number], column, nodes, panel_angle, edges)
+        edges, modes = motion.edges, motion.modes
+        matrices[number] = (
+            modes.state_from_real() @ motion.transition_matrices(column)[0] @ modes.real_from_state()
+        )
+    return np.stack(matrices)

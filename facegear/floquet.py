@@ -199,10 +199,8 @@ class Collocation:
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
-        matrices = [
-            collocation.transition_matrix(system, self.nodes, self.panel_angle) for system in family.systems
-        ]
-        return np.asarray(family.scale @ np.stack(matrices) @ family.inverse_scale, dtype=float)
+        matrices = collocation.transition_matrices(family.systems, self.nodes, self.panel_angle)
+        return np.asarray(family.scale @ matrices @ family.inverse_scale, dtype=float)
 
     def refined(self) -> Method:
         """Half as many nodes again and shorter panels."""

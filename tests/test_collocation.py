@@ -23,7 +23,7 @@ from benchmarks.synthetic_disk import (
     synthetic_disk,
     synthetic_shafts,
 )
-from facegear.collocation import FreeModes, UnsuitableSystemError, chain, transition_matrix
+from facegear.collocation import FreeModes, UnsuitableSystemError, chain, transition_matrices
 from facegear.columns import column_spectral_radii, family_spectral_radii, interpolate
 from facegear.floquet import AdaptiveMagnus, Collocation, multipliers, spectral_radii
 from facegear.periodic import LoadColumn, PeriodicSystem
@@ -75,10 +75,21 @@ def spectrum_distance(one, other):
 )
 def test_synthetic_disk_against_an_integrator(shapes, speed_rpm, count):
     expected = integrated_disk(speed_rpm * RPM, PINIONS[:count])
-    got = transition_matrix(synthetic_disk(speed_rpm * RPM, shapes[:count]))
+    got = transition_matrices([synthetic_disk(speed_rpm * RPM, shapes[:count])])[0]
     assert spectrum_distance(got, expected) < 1e-9
     scale = np.repeat([5e3, 1.0], 14)
     assert np.abs(scale[:, None] * (got - expected) / scale).max() < 1e-9
+
+
+def test_family_on_shared_panels_equals_each_alone(shapes):
+    """From 150 to 1000 rpm some systems share the panels of a slower one, others cannot."""
+    speeds = [600.0, 150.0, 1000.0, 700.0, 180.0]
+    systems = [synthetic_disk(speed * RPM, shapes[:1]) for speed in speeds]
+    together = transition_matrices(systems)
+    scale = np.repeat([5e3, 1.0], 14)
+    for matrix, system in zip(together, systems, strict=True):
+        alone = transition_matrices([system], nodes=24, panel_angle=5.0)[0]
+        assert np.abs(scale[:, None] * (matrix - alone) / scale).max() < 1e-10
 
 
 @pytest.mark.parametrize("count", [1, 2])
@@ -133,7 +144,7 @@ def test_columns_with_total_rate(shapes):
 def test_rigid_body_motion_takes_the_general_route():
     system = synthetic_shafts(0.0)
     with pytest.raises(UnsuitableSystemError, match="rigid-body"):
-        transition_matrix(system)
+        transition_matrices([system])
     damping = np.linspace(50.0, 400.0, 20)
     radii = column_spectral_radii(system, 0.0, damping, 1.58e8)
     for i in (0, 9, 19):
