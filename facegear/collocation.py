@@ -129,7 +129,7 @@ class FreeModes:
 
 
 @lru_cache(maxsize=16)
-def _gauss(nodes: int) -> tuple[Array, Array, Array]:
+def gauss_rule(nodes: int) -> tuple[Array, Array, Array]:
     """Gauss-Legendre nodes and weights on [0, 1], and a_ij = ∫_0^{x_i} l_j, shape (nodes, nodes)."""
     x, weights = np.polynomial.legendre.leggauss(nodes)
     degrees = np.arange(nodes)
@@ -142,7 +142,7 @@ def _gauss(nodes: int) -> tuple[Array, Array, Array]:
     return (x + 1.0) / 2.0, weights / 2.0, integrals @ coefficients / 2.0
 
 
-def _panel_edges(breakpoints: Array, angle: float, panel_angle: float) -> Array:
+def panel_edges(breakpoints: Array, angle: float, panel_angle: float) -> Array:
     """Return ends of panels: all breakpoints, and points between for a fastest motion of `angle` a period."""
     ends = np.append(breakpoints[1:], 1.0)
     counts = np.ceil((ends - breakpoints) * angle / panel_angle).astype(int)
@@ -181,7 +181,7 @@ def _split(matrix: ComplexArray) -> Array:
 
 
 def _build(system: PeriodicSystem, modes: FreeModes, nodes: int, edges: Array) -> _Panels:
-    x, weights, integration = _gauss(nodes)
+    x, weights, integration = gauss_rule(nodes)
     period = system.period
     start, length = edges[:-1], np.diff(edges)
     count, p, n = start.size, len(system.loads), modes.size
@@ -271,7 +271,7 @@ class FreeMotion:
         stiffest = float((column.stiffness @ self.mobility).max(initial=0.0))
         fastest = float(np.hypot(np.abs(self.modes.eigenvalues).max(), np.sqrt(stiffest)))
         if edges is None:
-            edges = _panel_edges(system.breakpoints, fastest * system.period, panel_angle)
+            edges = panel_edges(system.breakpoints, fastest * system.period, panel_angle)
         self.edges = edges
         self.panels = _build(system, self.modes, nodes, self.edges)
         extremes = column.extremes()
@@ -287,7 +287,7 @@ class FreeMotion:
         The state at the end of a panel converges twice as fast as the force along it: if the last Legendre
         coefficients of the force are ε of its size, ε² is left of its effect.
         """
-        x, weights, _ = _gauss(nodes)
+        x, weights, _ = gauss_rule(nodes)
         last = np.polynomial.legendre.legvander(2.0 * x - 1.0, nodes - 1)[:, -2:]
         tail = (last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T
         for _ in range(_MOST_HALVINGS):
