@@ -20,6 +20,7 @@ from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
 
 ComplexArray = NDArray[np.complex128]
+Kind = Literal["sum", "difference", "mean"]
 
 # Instants of the period over which the part of each mode in the motion is averaged.
 _INSTANTS = 8
@@ -46,7 +47,7 @@ class Combination:
 
     k: int
     j: int
-    kind: Literal["sum", "difference", "mean"]
+    kind: Kind
     order: int
 
     @property

@@ -16,9 +16,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray
 from numpy.typing import ArrayLike
 
 from facegear.collocation import is_suitable
@@ -31,15 +32,12 @@ from facegear.floquet import (
     transition_matrices,
 )
 from facegear.models import Model, is_whole_number, parameter_path, replace_parameter
-from facegear.parallel import Workers, computed
+from facegear.parallel import Workers, computed, parts_of
 from facegear.parameters import finite_array, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
 from facegear.stepping import Family
 from facegear.tracing import borders, tongues
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["borders", "stability_map", "tongues"]
 
@@ -120,8 +118,6 @@ def stability_map(
         radii[:, number * _CHUNK : number * _CHUNK + result.shape[1]] = result
     periods = np.concatenate([chunk.periods for chunk in chunks])
     error = _error_estimate(sweep, speeds, radii)
-
-    import xarray
 
     return xarray.DataArray(
         np.log(radii) / periods,
@@ -248,7 +244,7 @@ class _LoadChunk:
         """Everything the result depends on."""
         yield from (repr(self.method), self.loads)
         for system in self.systems:
-            yield from _content(system)
+            yield from parts_of(system)
 
     def compute(self) -> Array:
         """Spectral radii, shape (V, speeds)."""
@@ -280,7 +276,7 @@ class _ModelChunk:
         )
         for speed in self.speeds:
             for probe in sweep.probes:
-                yield from _content(sweep.models[probe].system(float(speed)))
+                yield from parts_of(sweep.models[probe].system(float(speed)))
 
     def compute(self) -> Array:
         """Spectral radii, shape (V, speeds)."""
@@ -366,15 +362,3 @@ def _error_estimate(sweep: _Sweep, speeds: Array, radii: Array) -> float:
         judge = (sweep.method or default_method(system)).refined()
         worst = max(worst, abs(_spectral_radius(system, judge) - float(radii[v, s])))
     return worst
-
-
-def _content(system: PeriodicSystem) -> Iterator[Any]:
-    """Everything a system is made of."""
-    yield from (system.mass, system.damping, system.stiffness, system.period)
-    for load in system.loads:
-        yield from (load.mass, load.damping, load.stiffness, load.rate)
-        for function in (load.shape, load.weight):
-            if function is None:
-                yield None
-            else:
-                yield from (function.breakpoints, function.coefficients)

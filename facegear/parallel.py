@@ -18,6 +18,7 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
 
 Workers = Literal["processes", "threads"]
@@ -83,6 +84,18 @@ def computed(
                 store.save(tasks[number], result)
             bar.update()
             yield number, result
+
+
+def parts_of(system: PeriodicSystem) -> Iterator[Any]:
+    """Everything a system is made of, for the content of a task."""
+    yield from (system.mass, system.damping, system.stiffness, system.period)
+    for load in system.loads:
+        yield from (load.mass, load.damping, load.stiffness, load.rate)
+        for function in (load.shape, load.weight):
+            if function is None:
+                yield None
+            else:
+                yield from (function.breakpoints, function.coefficients)
 
 
 def _in_parallel(

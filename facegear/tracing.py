@@ -5,19 +5,25 @@ The speeds to look at come from :mod:`facegear.scanning`; borders are roots of t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet import Method, multipliers
-from facegear.labels import Combination, combination
+from facegear.labels import Combination, Kind, combination
 from facegear.models import Model, parameter_path, replace_parameter
 from facegear.multiplier_curves import MultiplierCurve, method_for
+from facegear.parallel import computed, parts_of
 from facegear.parameters import finite_array, positive, within
+from facegear.piecewise import Array
 from facegear.scanning import SPEED_TOLERANCE, Scan, scan_of
+
+_KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
 @dataclass(frozen=True)
@@ -127,6 +133,8 @@ def borders(
     method: Method | None = None,
     threshold: float = 1e-8,
     jobs: int = -1,
+    progress: bool | None = None,
+    cache_directory: str | os.PathLike[str] | None = None,
 ) -> tuple[TongueSection, ...]:
     """Tongues at each of several values of a parameter, for drawing over a map.
 
@@ -138,8 +146,8 @@ def borders(
         Name of the swept parameter, as for :func:`facegear.maps.stability_map`.
     values : array_like, shape (V,)
         Values of the parameter.
-    jobs : int
-        Number of processes, as joblib's ``n_jobs``.
+    jobs, progress, cache_directory
+        As for :func:`facegear.maps.stability_map`; what is kept are the tongues of each value.
 
     Returns
     -------
@@ -156,31 +164,66 @@ def borders(
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"values must list at least one value of the parameter, got shape {array.shape}")
     parameter_path(model, parameter)
-    from joblib import Parallel, delayed
+    searches = [
+        _Search(replace_parameter(model, parameter, value), lowest_speed, highest_speed, method, threshold)
+        for value in array.tolist()
+    ]
 
-    models = [replace_parameter(model, parameter, value) for value in array.tolist()]
+    def sections(tasks: Sequence[_Search]) -> list[tuple[Tongue, ...]]:
+        tables = dict(computed(tasks, "tongue borders", jobs, progress, cache_directory))
+        return [_from_table(tables[i]) for i in range(len(tasks))]
 
-    def sections(numbers: Sequence[int], hints: dict[int, list[float]]) -> list[tuple[Tongue, ...]]:
-        search = delayed(tongues)
-        return list(
-            Parallel(n_jobs=jobs)(
-                search(
-                    models[i],
-                    lowest_speed,
-                    highest_speed,
-                    method=method,
-                    threshold=threshold,
-                    hints=hints.get(i, ()),
-                )
-                for i in numbers
-            )
-        )
-
-    found = sections(range(array.size), {})
+    found = sections(searches)
     missing = {i: peaks for i in range(array.size) if (peaks := _missing(found, i))}
-    for i, again in zip(missing, sections(list(missing), missing), strict=True):
-        found[i] = again
+    again = sections([replace(searches[i], hints=tuple(peaks)) for i, peaks in missing.items()])
+    for i, part in zip(missing, again, strict=True):
+        found[i] = part
     return tuple(TongueSection(value, part) for value, part in zip(array.tolist(), found, strict=True))
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Tongues of one model, as a task whose result is an array."""
+
+    model: Model
+    lowest_speed: float
+    highest_speed: float
+    method: Method | None
+    threshold: float
+    hints: tuple[float, ...] = ()
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on: of the model's code, what it makes of both ends and the middle."""
+        yield repr(self)
+        middle = (self.lowest_speed + self.highest_speed) / 2.0
+        for speed in (self.lowest_speed, middle, self.highest_speed):
+            yield from parts_of(self.model.system(speed))
+
+    def compute(self) -> Array:
+        """Borders, peak, growth rate, modes, kind and order, one row a tongue."""
+        found = tongues(
+            self.model,
+            self.lowest_speed,
+            self.highest_speed,
+            method=self.method,
+            threshold=self.threshold,
+            hints=self.hints,
+        )
+        rows = [
+            (t.lower, t.upper, t.peak, t.growth_rate, c.k, c.j, _KINDS.index(c.kind), c.order)
+            for t in found
+            for c in (t.combination,)
+        ]
+        return np.array(rows, dtype=float).reshape(-1, 8)
+
+
+def _from_table(table: Array) -> tuple[Tongue, ...]:
+    found = []
+    for *speeds, k, j, kind, order in table.tolist():
+        lower, upper, peak, growth = speeds
+        modes = Combination(int(k), int(j), _KINDS[int(kind)], int(order))
+        found.append(Tongue(lower, upper, peak, growth, modes))
+    return tuple(found)
 
 
 def _missing(found: Sequence[tuple[Tongue, ...]], number: int) -> list[float]:

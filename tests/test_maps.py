@@ -1,3 +1,7 @@
+import signal
+import subprocess
+import sys
+import time
 from dataclasses import dataclass
 
 import joblib
@@ -6,6 +10,7 @@ import pytest
 
 from benchmarks.synthetic_disk import contact_shape, disk_matrices
 from facegear import maps, parallel
+from facegear.cases import FIGURES
 from facegear.floquet import AdaptiveMagnus, Stepwise, growth_rate
 from facegear.geometry import Drive
 from facegear.maps import stability_map
@@ -204,6 +209,20 @@ def test_a_dask_cluster_gives_what_one_process_gives():
     np.testing.assert_array_equal(alone, shared)
 
 
+@pytest.mark.slow
+def test_a_dask_cluster_of_processes_gives_what_one_process_gives():
+    distributed = pytest.importorskip("distributed")
+    arguments = (TRANSVERSE, rad_per_s(np.linspace(100.0, 1000.0, 20)), "stiffness", [0.5, 1.0, 2.0])
+    alone = stability_map(*arguments, jobs=1)
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster),
+        joblib.parallel_config(backend="dask"),
+    ):
+        shared = stability_map(*arguments)
+    np.testing.assert_allclose(alone, shared, rtol=0.0, atol=1e-9)
+
+
 def interrupt_after(monkeypatch, tasks):
     """Stop as Ctrl-C does after some tasks; return the list of tasks that were run."""
     run, done = parallel._run, []
@@ -233,6 +252,47 @@ def test_an_interrupted_map_goes_on_where_it_stopped(tmp_path, monkeypatch):
     np.testing.assert_array_equal(stability_map(*arguments, jobs=1, cache_directory=tmp_path), expected)
     assert len(done) == 2
     assert not list(tmp_path.glob("*.part"))
+
+
+LONG_MAP = """
+import numpy as np
+from facegear.cases import FIGURES
+from facegear.maps import stability_map
+from facegear.parameters import rad_per_s
+
+chart = stability_map(
+    FIGURES["4.4a"].model(), rad_per_s(np.linspace(50.0, 1000.0, 400)), "stiffness", np.linspace(0.1, 2.0, 20),
+    jobs=2, cache_directory="{kept}",
+)
+np.save("{result}", chart.values)
+"""
+
+
+@pytest.mark.slow
+def test_two_workers_stopped_by_ctrl_c_lose_only_what_they_were_at(tmp_path):
+    kept, result = tmp_path / "kept", tmp_path / "result.npy"
+    command = [sys.executable, "-c", LONG_MAP.format(kept=kept.as_posix(), result=result.as_posix())]
+    with subprocess.Popen(command, stderr=subprocess.DEVNULL) as process:
+        while len(list(kept.glob("*.npz"))) < 3:
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(60) != 0
+    before = {path: path.stat().st_mtime_ns for path in kept.glob("*.npz")}
+    assert 3 <= len(before) < 50
+    assert not result.exists()
+    subprocess.run(command, check=True, stderr=subprocess.DEVNULL)
+    after = {path: path.stat().st_mtime_ns for path in kept.glob("*.npz")}
+    assert len(after) == 50
+    assert all(after[path] == moment for path, moment in before.items())
+    alone = stability_map(
+        FIGURES["4.4a"].model(),
+        rad_per_s(np.linspace(50.0, 1000.0, 400)),
+        "stiffness",
+        np.linspace(0.1, 2.0, 20),
+        jobs=1,
+    )
+    np.testing.assert_allclose(np.load(result), alone.values, rtol=0.0, atol=1e-9)
 
 
 def truncate(path):

@@ -8,6 +8,7 @@ from scipy.linalg import eigh_tridiagonal
 from scipy.optimize import brentq
 
 import facegear.maps
+from facegear import parallel
 from facegear.floquet import growth_rate
 from facegear.geometry import Drive
 from facegear.hsu import resonance_bands
@@ -284,9 +285,9 @@ def test_the_curve_of_multipliers_is_that_of_the_systems():
     # The derivative against a central difference.
     step = 1e-6
     slowness = 1.0 / speeds
-    _, slopes = curve.transition_matrices(speeds)
-    ahead, _ = curve.transition_matrices(1.0 / (slowness + step))
-    behind, _ = curve.transition_matrices(1.0 / (slowness - step))
+    slopes = curve.slopes(speeds)
+    ahead = curve.transition_matrices(1.0 / (slowness + step))
+    behind = curve.transition_matrices(1.0 / (slowness - step))
     difference = (ahead - behind) / (2.0 * step)
     assert np.abs(slopes - difference).max() < 1e-5 * np.abs(slopes).max()
 
@@ -298,6 +299,28 @@ def test_borders_follow_the_tongues_over_a_parameter():
     widths = [section.tongues[0].width for section in sections[:3]]
     assert widths == pytest.approx([np.sqrt(0.05**2 - (2 * c) ** 2) for c in values[:3]], rel=0.01)
     assert sections[3].tongues == ()
+
+
+def test_borders_go_on_where_they_were_interrupted(tmp_path, monkeypatch):
+    arguments = (mathieu(1e-3), "damping", [0.0, 0.01, 0.024, 0.0251], 90.0, 110.0)
+    expected = borders(*arguments, jobs=1)
+    run, done = parallel._run, []
+
+    def stopping(number, task):
+        done.append(number)
+        if len(done) == 3:
+            raise KeyboardInterrupt
+        return run(number, task)
+
+    monkeypatch.setattr(parallel, "_run", stopping)
+    with pytest.raises(KeyboardInterrupt):
+        borders(*arguments, jobs=1, cache_directory=tmp_path)
+    assert borders(*arguments, jobs=1, cache_directory=tmp_path) == expected
+    # Values 0 and 1 once, 2 twice, 3 once; the last has lost its neighbour's tongue and is searched again.
+    assert done == [0, 1, 2, 2, 3, 0]
+    done.clear()
+    assert borders(*arguments, jobs=1, cache_directory=tmp_path) == expected
+    assert done == []
 
 
 @dataclass(frozen=True)
