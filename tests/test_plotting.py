@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from facegear import Drive, classical, floquet, meshing_arrays, solids, stability_arrays
-from facegear.plotting import interactive, meshing, schematics, stability
+from facegear.plotting import interactive, meshing, schematics, stability, style
 
 DRIVE = Drive(26, 130, 3.175e-3)
 TOOTH = meshing_arrays.tooth_and_contact_lines(DRIVE, lines=5, points=9)
@@ -172,6 +172,6 @@ def test_stability_figures_draw_and_carry_their_labels(draw, shown):
 
 def test_unstable_colours_stand_off_white_and_darken_in_grey():
     # Relative luminance; white is 1.
-    luminance = stability._GROWTH(np.linspace(0.0, 1.0, 64))[:, :3] @ [0.2126, 0.7152, 0.0722]
+    luminance = style.GROWTH(np.linspace(0.0, 1.0, 64))[:, :3] @ [0.2126, 0.7152, 0.0722]
     assert luminance[0] < 0.9
     assert (np.diff(luminance) < 0.0).all()

@@ -8,13 +8,22 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from facegear.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, VERMILION, WIDTH, panels, styled
+from facegear.plotting.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    GROWTH,
+    INK,
+    ORANGE,
+    VERMILION,
+    WIDTH,
+    panels,
+    styled,
+)
 
-# White is stable; the lightest unstable colour is well off white, and all get darker with growth, in grey too.
-_GROWTH = LinearSegmentedColormap.from_list("growth", mpl.colormaps["YlGnBu"](np.linspace(0.28, 1.0, 256)))
 _RANGES = ((BLUE, "o"), (VERMILION, "s"))
 _SPEED = "speed of the face gear [rpm]"
 _TEETH = "number of pinion teeth $N_1$"
@@ -107,7 +116,7 @@ def thickness_map(chart: xr.Dataset) -> Figure:
         speed,
         ratio,
         np.ma.masked_less_equal(growth, 0.0),
-        cmap=_GROWTH,
+        cmap=GROWTH,
         norm=Normalize(0.0, float(growth.max())),
         shading="nearest",
         rasterized=True,
@@ -142,7 +151,7 @@ def thickness_sections(chart: xr.Dataset) -> Figure:
         float(section[0]) - height / 2, max(float(section[-1]), float(chart["tip_ratio"].max())) * 1.04
     )
     figure.colorbar(
-        mpl.cm.ScalarMappable(norm, _GROWTH), ax=ax, label="largest growth rate of the tongue [1/s]", pad=0.02
+        mpl.cm.ScalarMappable(norm, GROWTH), ax=ax, label="largest growth rate of the tongue [1/s]", pad=0.02
     )
     return figure
 
@@ -156,8 +165,8 @@ def _draw_row(ax: Axes, row: xr.Dataset, ratio: float, height: float, norm: Any)
     ax.broken_barh(
         spans,
         (ratio - height / 2, height),
-        facecolors=_GROWTH(norm(found["largest_growth"].values)),
-        edgecolors=_GROWTH(norm(found["largest_growth"].values)),
+        facecolors=GROWTH(norm(found["largest_growth"].values)),
+        edgecolors=GROWTH(norm(found["largest_growth"].values)),
         linewidth=0.6,
     )
 

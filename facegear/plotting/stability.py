@@ -16,6 +16,7 @@ from facegear.plotting.style import (
     BLUE,
     FAINT,
     GREEN,
+    GROWTH,
     INK,
     ORANGE,
     PURPLE,
@@ -25,8 +26,6 @@ from facegear.plotting.style import (
     styled,
 )
 
-# White is stable. The lightest unstable colour is well off white, and all get darker with growth, in grey too.
-_GROWTH = LinearSegmentedColormap.from_list("growth", mpl.colormaps["YlGnBu"](np.linspace(0.28, 1.0, 256)))
 # Growth below this share of the natural frequency is rounding at the border of an undamped tongue.
 _LEVEL = 2e-6
 
@@ -183,7 +182,7 @@ def _draw_growth(ax: Axes, growth: xr.DataArray, largest: float) -> Any:
         growth["frequency"],
         growth[growth.dims[0]],
         np.ma.masked_less(growth.values, _LEVEL),
-        cmap=_GROWTH,
+        cmap=GROWTH,
         norm=Normalize(0.0, largest),
         shading="nearest",
         rasterized=True,

@@ -7,8 +7,10 @@ from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib import rcsetup
 from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 P = ParamSpec("P")
@@ -18,6 +20,9 @@ R = TypeVar("R")
 BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7"
 INK, GREY, FAINT = "#222222", "#767676", "#D9D9D9"
 STEEL = "#B8C4CE"  # bodies of gears
+
+# White is stable. The lightest unstable colour is well off white, and all get darker with growth, in grey too.
+GROWTH = LinearSegmentedColormap.from_list("growth", mpl.colormaps["YlGnBu"](np.linspace(0.28, 1.0, 256)))
 
 # Inches; the text column of the book is about 7.3 in wide at 100 dpi.
 WIDTH = 7.2

@@ -5,17 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from facegear.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, VERMILION, WIDTH, panels, styled
-
-# White is stable. The lightest unstable colour is well off white, and all get darker with growth, in grey too.
-_GROWTH = LinearSegmentedColormap.from_list("growth", mpl.colormaps["YlGnBu"](np.linspace(0.28, 1.0, 256)))
+from facegear.plotting.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    GROWTH,
+    INK,
+    ORANGE,
+    VERMILION,
+    WIDTH,
+    panels,
+    styled,
+)
 
 _AXIS = {
     "stiffness": r"bearing stiffness $\mu$",
@@ -39,7 +46,7 @@ def _draw_map(ax: Axes, chart: xr.Dataset, largest: float) -> Any:
         speed,
         value,
         np.ma.masked_less_equal(growth, 0.0),
-        cmap=_GROWTH,
+        cmap=GROWTH,
         norm=Normalize(0.0, largest),
         shading="nearest",
         rasterized=True,
