@@ -12,6 +12,7 @@ import json
 import os
 import platform
 import resource
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -274,6 +275,40 @@ def measure(size: int) -> list[Row]:
     return rows
 
 
+def fresh_rows(size: int) -> list[Row]:
+    """Time the public call in fresh processes: first call with its imports, first call, second call."""
+    rows = []
+    for workers in (1, 2):
+        command = [sys.executable, "-m", "benchmarks.first_call", str(size), str(workers)]
+        done = subprocess.run(
+            command,
+            capture_output=True,
+            text=True,
+            check=True,
+            env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+        )
+        spans = json.loads(done.stdout)
+        error = spans.pop("error_estimate")
+        with_imports = {key: spans["imports"][key] + spans["first call"][key] for key in spans["imports"]}
+        for name, span in (
+            ("first call, imports included", with_imports),
+            ("first call, imports done", spans["first call"]),
+            ("second call", spans["second call"]),
+        ):
+            rows.append(
+                Row(
+                    f"stability_map of Fig. 4.4(a), {name}",
+                    workers,
+                    span["seconds"],
+                    span["processor_seconds"],
+                    error,
+                    size**2,
+                )
+            )
+            print(rows[-1], file=sys.stderr, flush=True)
+    return rows
+
+
 def table(rows: list[Row], size: int) -> str:
     """Text of the table; ratios are those of processor time to the first row, so a busy machine does not matter."""
     first = rows[0].processor_seconds
@@ -306,7 +341,7 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path("build/benchmarks.json"))
     arguments = parser.parse_args()
     with threadpool_limits(1):
-        rows = measure(arguments.size)
+        rows = measure(arguments.size) + fresh_rows(arguments.size)
     memory = peak_memory()
     print(table(rows, arguments.size))
     print(f"peak memory of one process: {memory:.0f} MB")
