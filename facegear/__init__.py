@@ -54,7 +54,7 @@ _PUBLIC = {
     # design
     "critical_thickness": "design",
     "design_body": "design",
-    "root_stress": "design",
+    "root_stress": "tooth_design",
 }
 
 __all__ = sorted(_PUBLIC)

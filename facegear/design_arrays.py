@@ -11,22 +11,16 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from facegear.design import (
-    BodyDesign,
-    CriticalThickness,
-    Lobe,
-    highest_lobes,
-    root_stress,
-    root_thickness,
-    tooth_thickness,
-)
+from facegear.design import BodyDesign
 from facegear.geometry import DEDENDUM, Drive
 from facegear.kinematics import ContactPath, SkewLine
+from facegear.lobes import CriticalThickness, Lobe, highest_lobes
 from facegear.models import replace_parameter
-from facegear.parameters import FloatArray, integer_at_least, rpm
+from facegear.parameters import FloatArray, rpm
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
 from facegear.reference import variable
+from facegear.tooth_design import root_stress, root_thickness, tooth_thickness
 from facegear.tracing import tongues
 from facegear.transverse import Transverse, shape_vector
 
@@ -328,7 +322,8 @@ def variants(model: Transverse) -> dict[str, Transverse]:
 
 def critical_of_variants(
     models: Mapping[str, Transverse],
-    speed_ranges: Sequence[tuple[float, float]],
+    lowest_speed: float,
+    highest_speeds: Sequence[float],
     thickness_range: tuple[float, float],
     jobs: int = 2,
 ) -> xr.Dataset:
@@ -337,10 +332,12 @@ def critical_of_variants(
     Parameters
     ----------
     models : mapping of str to Transverse
-    speed_ranges : sequence of tuple of float
-        Operating speeds [rad/s].
+    lowest_speed : float
+        Lowest operating speed [rad/s].
+    highest_speeds : sequence of float
+        Highest operating speeds [rad/s].
     thickness_range : tuple of float
-        As for :func:`facegear.design.highest_lobes`.
+        As for :func:`facegear.lobes.highest_lobes`.
     jobs : int
         Number of processes.
 
@@ -349,38 +346,40 @@ def critical_of_variants(
     xarray.Dataset
         ``critical_ratio`` over (variant, highest_rpm); names in the attribute ``variants``.
     """
-    integer_at_least("number of speed ranges", len(speed_ranges), 1)
     from joblib import Parallel, delayed
 
-    work = [(model, speeds) for model in models.values() for speeds in speed_ranges]
-    found = Parallel(n_jobs=jobs)(
-        delayed(_critical)(model, speeds, thickness_range) for model, speeds in work
+    rows = Parallel(n_jobs=jobs)(
+        delayed(_critical)(model, lowest_speed, tuple(highest_speeds), thickness_range)
+        for model in models.values()
     )
-    values = np.array([each.thickness_ratio for each in found]).reshape(len(models), -1)
+    values = np.array([[each.thickness_ratio for each in row] for row in rows])
+    highest_rpm = [round(float(rpm(highest)), 6) for highest in highest_speeds]
     return xr.Dataset(
         {
             "critical_ratio": variable(
                 ("variant", "highest_rpm"), values, "Critical thickness ratio h/a", "1", atol=_RATIO
             )
         },
-        coords={
-            "variant": np.arange(len(models)),
-            "highest_rpm": [round(float(rpm(highest)), 6) for _, highest in speed_ranges],
-        },
+        coords={"variant": np.arange(len(models)), "highest_rpm": highest_rpm},
         attrs={
-            "parameters": ", ".join(f"{rpm(low):.6g} to {rpm(high):.6g} rpm" for low, high in speed_ranges),
+            "parameters": ", ".join(
+                f"{rpm(lowest_speed):.6g} to {highest:.6g} rpm" for highest in highest_rpm
+            ),
             "variants": "; ".join(models),
         },
     )
 
 
 def _critical(
-    model: Transverse, speed_range: tuple[float, float], thickness_range: tuple[float, float]
-) -> CriticalThickness:
+    model: Transverse,
+    lowest_speed: float,
+    highest_speeds: tuple[float, ...],
+    thickness_range: tuple[float, float],
+) -> tuple[CriticalThickness, ...]:
     from threadpoolctl import threadpool_limits
 
     def model_at(thickness_ratio: float) -> Transverse:
         return replace_parameter(model, "thickness_ratio", thickness_ratio)
 
     with threadpool_limits(limits=1):
-        return highest_lobes(model_at, speed_range, thickness_range)
+        return highest_lobes(model_at, lowest_speed, highest_speeds, thickness_range)

@@ -114,14 +114,14 @@ def is_whole_number(model: object, name: str) -> bool:
     part: Any = model
     for field in outer:
         part = getattr(part, field)
-    return bool(_declared(type(part)).get(last) is int)
+    return bool(_declared(part).get(last) is int)
 
 
 def _replace(part: Any, path: tuple[str, ...], value: float) -> Any:
     name, rest = path[0], path[1:]
     if rest:
         return dataclasses.replace(part, **{name: _replace(getattr(part, name), rest, value)})
-    if _declared(type(part)).get(name) is int and float(value).is_integer():
+    if _declared(part).get(name) is int and float(value).is_integer():
         return dataclasses.replace(part, **{name: int(value)})
     return dataclasses.replace(part, **{name: value})
 
@@ -136,10 +136,13 @@ def _is_number(value: Any) -> bool:
 
 def _takes_number(part: Any, name: str) -> bool:
     """Whether an optional field that is None now is declared to take a number."""
-    return float in get_args(_declared(type(part)).get(name))
+    return float in get_args(_declared(part).get(name))
 
 
-@cache
-def _declared(kind: type) -> dict[str, Any]:
-    """Return declared types of the fields of a class; finding them takes longer than anything else here."""
-    return get_type_hints(kind)
+def _declared(part: object) -> dict[str, Any]:
+    """Return declared types of the fields of a dataclass."""
+    return _type_hints(part.__class__)
+
+
+# Resolving annotations takes longer than anything else here.
+_type_hints = cache(get_type_hints)

@@ -39,13 +39,18 @@ class _Window:
     high: float
     coefficients: Array
 
-    def evaluate(self, slowness: Array) -> tuple[Array, Array]:
-        """Matrices and their derivatives by slowness, each of shape (m, d, d)."""
-        half = (self.high - self.low) / 2.0
-        local = np.clip((slowness - (self.high + self.low) / 2.0) / half, -1.0, 1.0)
-        slope = chebyshev.chebder(self.coefficients, axis=0) / half
-        basis = chebyshev.chebvander(local, self.coefficients.shape[0] - 1)
-        return np.tensordot(basis, self.coefficients, axes=1), np.tensordot(basis[:, :-1], slope, axes=1)
+    def values(self, slowness: Array) -> Array:
+        """Matrices, shape (m, d, d)."""
+        return np.tensordot(self._basis(slowness), self.coefficients, axes=1)
+
+    def slopes(self, slowness: Array) -> Array:
+        """Their derivatives by slowness, shape (m, d, d)."""
+        slope = chebyshev.chebder(self.coefficients, axis=0) / ((self.high - self.low) / 2.0)
+        return np.tensordot(self._basis(slowness)[:, :-1], slope, axes=1)
+
+    def _basis(self, slowness: Array) -> Array:
+        local = (slowness - (self.high + self.low) / 2.0) / ((self.high - self.low) / 2.0)
+        return np.asarray(chebyshev.chebvander(np.clip(local, -1.0, 1.0), self.coefficients.shape[0] - 1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,21 +105,27 @@ class MultiplierCurve:
         error = max(_distance(curve, model.system(float(v)), float(v), chosen) for v in checked)
         return cls(lowest_speed, highest_speed, angles, error, tuple(windows))
 
-    def transition_matrices(self, speeds: Array) -> tuple[Array, Array]:
-        """Scaled Φ at speeds (m,) and its derivative by 1/speed, each of shape (m, 2n, 2n)."""
+    def transition_matrices(self, speeds: Array) -> Array:
+        """Scaled Φ at speeds (m,), shape (m, 2n, 2n)."""
+        return self._by_window(speeds, _Window.values)
+
+    def slopes(self, speeds: Array) -> Array:
+        """Differentiate the scaled Φ by 1/speed at speeds (m,), shape (m, 2n, 2n)."""
+        return self._by_window(speeds, _Window.slopes)
+
+    def _by_window(self, speeds: Array, evaluate: Callable[[_Window, Array], Array]) -> Array:
         slowness = 1.0 / np.asarray(speeds, dtype=float)
-        size = self.windows[0].coefficients.shape[1]
-        values, slopes = np.empty((2, slowness.size, size, size))
+        found = np.empty((slowness.size, *self.windows[0].coefficients.shape[1:]))
         starts = np.array([window.low for window in self.windows])
         where = np.clip(np.searchsorted(starts, slowness, side="right") - 1, 0, None)
         for number in np.unique(where):
             inside = where == number
-            values[inside], slopes[inside] = self.windows[number].evaluate(slowness[inside])
-        return values, slopes
+            found[inside] = evaluate(self.windows[number], slowness[inside])
+        return found
 
     def spectral_radii(self, speeds: Array) -> Array:
         """max|α| at speeds (m,)."""
-        matrices, _ = self.transition_matrices(np.atleast_1d(speeds))
+        matrices = self.transition_matrices(np.atleast_1d(speeds))
         return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
 
 
@@ -175,7 +186,7 @@ def _coefficients(values: Array) -> Array:
 
 def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:
     """Largest distance of a multiplier of the curve to the nearest of a refined method, those inside 1/2 left out."""
-    coarse = np.linalg.eigvals(curve.transition_matrices(np.array([speed]))[0][0])
+    coarse = np.linalg.eigvals(curve.transition_matrices(np.array([speed]))[0])
     fine = np.linalg.eigvals(transition_matrices([system], method.refined())[0])
     distance = np.abs(coarse[:, None] - fine[None, :]).min(axis=1)
     return float(distance[np.abs(coarse) > 0.5].max(initial=0.0))

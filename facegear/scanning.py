@@ -120,7 +120,7 @@ def _foretold(curve: MultiplierCurve, centres: Array, reach: Array, threshold: f
     centres, reach = centres[inside], reach[inside]
     if centres.size == 0:
         return centres, reach
-    matrices, slopes = curve.transition_matrices(1.0 / centres)
+    matrices, slopes = curve.transition_matrices(1.0 / centres), curve.slopes(1.0 / centres)
     values, vectors = np.linalg.eig(matrices)
     # Exactly dependent eigenvectors, at a border, have no inverse.
     left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
@@ -188,7 +188,7 @@ def _critical(curve: MultiplierCurve, speeds: Array, threshold: float) -> list[_
     """Critical motions at speeds (m,)."""
     found = []
     for part in np.array_split(speeds, speeds.size // _BATCH + 1):
-        values, vectors = np.linalg.eig(curve.transition_matrices(part)[0])
+        values, vectors = np.linalg.eig(curve.transition_matrices(part))
         left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
         # Of a conjugate pair the one above the axis, at each speed.
         largest = np.argmax(np.abs(values) * np.where(values.imag < 0.0, 1.0 - 1e-9, 1.0), axis=1)

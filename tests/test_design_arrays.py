@@ -2,16 +2,11 @@ import numpy as np
 import pytest
 
 from facegear import design_arrays
-from facegear.design import (
-    BodyDesign,
-    CriticalThickness,
-    Lobe,
-    constant_diametral_pitch,
-    constant_pitch_radius,
-    root_stress,
-)
+from facegear.design import BodyDesign
+from facegear.lobes import CriticalThickness, Lobe
 from facegear.parameters import MeshLoad, rad_per_s
 from facegear.plate import Body
+from facegear.tooth_design import constant_diametral_pitch, constant_pitch_radius, root_stress
 from facegear.transverse import Transverse, coordinates, shape_vector
 
 DRIVE = constant_diametral_pitch(25)
@@ -95,8 +90,8 @@ def test_lobe_ends_like_a_parabola():
 
 
 def test_critical_of_variants_and_tips():
-    speeds = tuple(rad_per_s([150.0, 300.0]).tolist())
-    data = design_arrays.critical_of_variants({"own": MODEL}, [speeds], (0.036, 0.039), jobs=1)
+    low, high = rad_per_s([150.0, 300.0]).tolist()
+    data = design_arrays.critical_of_variants({"own": MODEL}, low, [high], (0.036, 0.039), jobs=1)
     assert data.attrs["variants"] == "own"
     assert data["highest_rpm"].values == pytest.approx([300.0])
     assert float(data["critical_ratio"][0, 0]) == pytest.approx(0.0375, abs=1.5e-4)
