@@ -17,6 +17,8 @@ import nbformat
 import yaml
 from doit.exceptions import TaskFailed
 
+from facegear.contents import ContentsError
+from tools.pages import bibtex, figure_index, run_times
 from tools.progress import CELLS, BuildReporter
 from tools.run_notebook import code_cells
 
@@ -25,6 +27,7 @@ BUILD = ROOT / "build"
 BUILD.mkdir(exist_ok=True)  # doit opens its record there before any step runs
 EXECUTED = BUILD / "executed"
 SOURCE = BUILD / "book-src"
+PICTURES = BUILD / "pictures"
 PAGES = BUILD / "_build"
 
 DOIT_CONFIG = {
@@ -41,6 +44,13 @@ NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 CHAPTERS = [path.stem for path in NOTEBOOKS if path.stem < "90"]
 # Which notebooks read what others leave in `build/`; all others stand alone.
 NEEDS = {"90_ledger": CHAPTERS}
+# The map on the title page: the notebook that computes it, and its arrays.
+MAP_NOTEBOOK, MAP_ARRAYS = "04_one_pinion", "ch04_figure_4_04a.nc"
+VIGNETTES = [
+    PICTURES / f"vignette_{theme}.svg"
+    for theme in ("light", "dark")
+    if ROOT / "notebooks" / f"{MAP_NOTEBOOK}.ipynb" in NOTEBOOKS
+]
 
 # One thread a process: two notebooks share the machine, and threads slow small matrices down.
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
@@ -54,7 +64,7 @@ def files(folder: str, pattern: str) -> list[Path]:
 def inputs(notebook: Path) -> list[Path]:
     """Return the data files a notebook is checked against: those whose first number is its chapter's.
 
-    A file without a number belongs to every notebook, and a notebook without a chapter reads everything.
+    A file without a number belongs to no chapter, and a notebook that is not a chapter reads everything.
     """
 
     def number(path: Path) -> int | None:
@@ -62,8 +72,8 @@ def inputs(notebook: Path) -> list[Path]:
         return int(found.group()) if found else None
 
     chapter = number(notebook)
-    everything = chapter is None or notebook.stem not in CHAPTERS
-    return [path for path in files("data", "*.*") if everything or number(path) in (chapter, None)]
+    everything = notebook.stem not in CHAPTERS
+    return [path for path in files("data", "*.*") if everything or number(path) == chapter]
 
 
 def execute_notebook(notebook: Path) -> TaskFailed | None:
@@ -117,8 +127,25 @@ def task_notebook() -> Iterator[dict]:
         }
 
 
-def stage() -> None:
-    """Lay out the source folder of the book: pages, executed notebooks, arrays for download."""
+def task_vignette() -> Iterator[dict]:
+    """Draw the map of the title page."""
+    if VIGNETTES:
+        script = ROOT / "tools" / "draw_vignette.py"
+        yield {
+            "name": MAP_NOTEBOOK,
+            "doc": "draw the map of the title page",
+            "actions": [[sys.executable, str(script), str(BUILD / "arrays" / MAP_ARRAYS), str(PICTURES)]],
+            "file_dep": [
+                EXECUTED / f"{MAP_NOTEBOOK}.ipynb",
+                script,
+                *files("facegear/plotting", "*.py"),
+            ],
+            "targets": VIGNETTES,
+        }
+
+
+def stage() -> TaskFailed | None:
+    """Lay out the source folder of the book: pages, executed notebooks, pictures, files for download."""
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(ROOT / "book", SOURCE)
     (SOURCE / "notebooks").mkdir()
@@ -131,6 +158,22 @@ def stage() -> None:
     (SOURCE / "data").mkdir()
     for array in files("data/reference", "*.nc"):
         shutil.copy2(array, SOURCE / "data")
+    if (BUILD / "ledger.csv").exists():
+        shutil.copy2(BUILD / "ledger.csv", SOURCE / "data")
+    if PICTURES.exists():
+        shutil.copytree(PICTURES, SOURCE / "pictures")
+    executed = [EXECUTED / notebook.name for notebook in NOTEBOOKS]
+    try:
+        pages = {
+            "figures.md": figure_index(ROOT / "data" / "contents.yaml", NOTEBOOKS),
+            "run_times.md": run_times(executed),
+            "citation.bib": bibtex(ROOT / "CITATION.cff"),
+        }
+    except (ValueError, ContentsError) as problem:
+        return TaskFailed(str(problem))
+    for name, text in pages.items():
+        (SOURCE / name).write_text(text, encoding="utf-8")
+    return None
 
 
 def write_config() -> Path:
@@ -197,6 +240,10 @@ def task_book() -> dict:
             *(EXECUTED / notebook.name for notebook in NOTEBOOKS),
             *files("book", "*"),
             *files("data/reference", "*.nc"),
+            *VIGNETTES,
+            ROOT / "data" / "contents.yaml",
+            ROOT / "tools" / "pages.py",
+            ROOT / "CITATION.cff",
             ROOT / "_config.yml",
             ROOT / "uv.lock",
         ],

@@ -7,12 +7,13 @@ the unit, and the status that the compendium claims. A chapter computes the same
 
 from __future__ import annotations
 
+import csv
 import math
 import os
 import re
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import Any
@@ -195,37 +196,79 @@ def as_markdown(rows: Sequence[LedgerRow]) -> str:
     """Rows as a Markdown table: where, what, printed, computed, status."""
     lines = ["| where | quantity | printed | computed | status |", "|---|---|---|---|---|"]
     for row in rows:
-        value, unit = row.printed, f" {row.printed.unit}" if row.printed.unit else ""
-        if isinstance(value.printed, bool):
-            shown = ["stated", {True: "holds", False: "does not hold", None: "-"}[row.computed]]  # type: ignore[index]
-        else:
-            # Two digits more than are printed, so that the reader sees the rounding.
-            digits = max(0, -int(Decimal(value.printed).as_tuple().exponent)) + 2
-            shown = [
-                value.printed + unit,
-                "-" if row.computed is None else f"{row.computed:.{digits}f}{unit}",
-            ]
-        lines.append(f"| {value.where} | {value.quantity} | {shown[0]} | {shown[1]} | {row.status} |")
+        value = row.printed
+        shown = "stated" if isinstance(value.printed, bool) else f"{value.printed} {value.unit}".strip()
+        lines.append(_table_row(value.where, value.quantity, shown, _found(row), row.status))
     return "\n".join(lines)
 
 
+def _table_row(*cells: str) -> str:
+    """Row of a Markdown table; a bar inside a cell, as in |σ|, does not end it."""
+    return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
+
+
+def _found(row: LedgerRow) -> str:
+    """Write what this run found with two digits more than are printed, so that the rounding shows."""
+    if row.computed is None:
+        return "-"
+    if isinstance(row.computed, bool):
+        return "holds" if row.computed else "does not hold"
+    digits = max(0, -int(Decimal(row.printed.printed).as_tuple().exponent)) + 2
+    return f"{row.computed:.{digits}f} {row.printed.unit}".strip()
+
+
 def counts_as_markdown(chapters: Mapping[int, Sequence[LedgerRow]]) -> str:
-    """How many rows of each chapter have each status, as a Markdown table; keys are the numbers of chapters."""
+    """How many rows of each chapter and of all have each status, as a Markdown table.
+
+    Parameters
+    ----------
+    chapters : mapping of int to sequence of LedgerRow
+        Rows by number of the chapter.
+    """
     lines = [f"| chapter | {' | '.join(STATUSES)} | all |", "|---" * (len(STATUSES) + 2) + "|"]
-    for number, rows in chapters.items():
+    everything = [row for rows in chapters.values() for row in rows]
+    for name, rows in {**chapters, "**all**": everything}.items():
         counts = [sum(row.status == status for row in rows) for status in STATUSES]
-        lines.append(f"| {number} | {' | '.join(map(str, counts))} | {len(rows)} |")
+        lines.append(f"| {name} | {' | '.join(map(str, counts))} | {len(rows)} |")
     return "\n".join(lines)
 
 
 def remarks_as_markdown(rows: Sequence[LedgerRow]) -> str:
-    """Where, what, status, and the sentence that explains it, as a Markdown table."""
-    lines = ["| where | quantity | status | why |", "|---|---|---|---|"]
+    """Where, what is stated, what stands instead, and the evidence, as a Markdown table.
+
+    The evidence is what was computed and how; a row that was not computed says what is missing.
+    """
+    lines = ["| where | stated | why not as it stands | evidence |", "|---|---|---|---|"]
     for row in rows:
         value = row.printed
-        why = f"{value.remark} {value.convention}".strip()
-        lines.append(f"| {value.where} | {value.quantity} | {row.status} | {why} |")
+        stated = value.quantity
+        if not isinstance(value.printed, bool):
+            stated += f": {value.printed} {value.unit}".rstrip()
+        why = f"{value.convention} {value.remark}".strip()
+        lines.append(_table_row(value.where, stated, why, f"{value.how}: {_found(row)}"))
     return "\n".join(lines)
+
+
+def save_csv(chapters: Mapping[int, Sequence[LedgerRow]], path: str | Path) -> Path:
+    """Write all rows as one table of comma-separated values, with a heading line.
+
+    Parameters
+    ----------
+    chapters : mapping of int to sequence of LedgerRow
+        Rows by number of the chapter.
+    path : str or Path
+        The file; its folder is made.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    names = [field.name for field in fields(PrintedValue)]
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        table = csv.DictWriter(stream, ["chapter", *names, "computed"])
+        table.writeheader()
+        for number, rows in chapters.items():
+            for row in rows:
+                table.writerow({"chapter": number, **asdict(row.printed), "computed": row.computed})
+    return path
 
 
 def save_ledger(rows: tuple[LedgerRow, ...], path: str | Path) -> Path:

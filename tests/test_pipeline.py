@@ -23,6 +23,7 @@ from facegear.reference import variable
 arrays = xr.Dataset({{"y": variable("x", [1.0, {value}], "height", "m", atol=1e-9)}}, {{"x": [0.0, 1.0]}})
 check_figures({{"figure_tiny": arrays}}, "{data}", "{build}")
 """
+CONTENTS = "sections: []\ntables: []\nfigures: []\n"
 ANCHOR = "route: by hand\nanchors:\n- {variable: y, at: {x: 1.0}, value: 2.0, atol: 1.0e-6}\n"
 
 
@@ -181,13 +182,14 @@ def test_second_build_waits_for_the_first(tmp_path: Path) -> None:
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """Lay out a project with this one's tools and settings, two small notebooks and one page."""
-    for name in ("dodo.py", "_config.yml"):
+    for name in ("dodo.py", "_config.yml", "CITATION.cff"):
         shutil.copy(ROOT / name, tmp_path)
     (tmp_path / "uv.lock").write_text("", encoding="utf-8")
     shutil.copytree(ROOT / "tools", tmp_path / "tools")
     (tmp_path / "facegear").mkdir()
     (tmp_path / "facegear" / "module.py").write_text("a = 1\n", encoding="utf-8")
     (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "contents.yaml").write_text(CONTENTS, encoding="utf-8")
     book = tmp_path / "book"
     shutil.copytree(ROOT / "book" / "_assets", book / "_assets", ignore=shutil.ignore_patterns("vendor"))
     (book / "references.bib").write_text("", encoding="utf-8")

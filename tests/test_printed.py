@@ -1,5 +1,6 @@
 """The ledger: a status follows from the numbers, or the chapter stops."""
 
+import csv
 from pathlib import Path
 
 import pytest
@@ -153,7 +154,31 @@ def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
     assert "| stated | holds |" in table[4]
     assert "| 231.94 mm | - |" in table[5]
     assert printed.counts_as_markdown({3: rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 |"
-    assert "To every digit. as chosen |" in printed.remarks_as_markdown(rows)
+    assert printed.counts_as_markdown({3: rows}).splitlines()[3] == "| **all** | 1 | 1 | 1 | 1 | 4 |"
+    (remark,) = [line for line in printed.remarks_as_markdown(rows).splitlines() if "282" in line]
+    assert "282 mm | To every digit." in remark
+    assert remark.endswith(": 283.04 mm |")
+
+
+def test_a_bar_in_a_cell_does_not_end_it():
+    value = printed.PrintedValue(**(ENTRY | {"how": "where |σ| > 1"}))
+    row = printed.LedgerRow(value, 231.94, printed.REPRODUCED)
+    line = printed.remarks_as_markdown([row]).splitlines()[-1]
+    assert r"where \|σ\| > 1" in line
+    assert line.replace(r"\|", "").count("|") == 5
+
+
+def test_all_rows_are_written_as_one_table(tmp_path):
+    entries = (printed.PrintedValue(**ENTRY), printed.PrintedValue(**(ENTRY | {"id": "b", "printed": True})))
+    rows = printed.ledger(entries, {ENTRY["id"]: 231.94, "b": True})
+    path = printed.save_csv({3: rows[:1], 4: rows[1:]}, tmp_path / "new" / "ledger.csv")
+    with path.open(encoding="utf-8", newline="") as stream:
+        table = list(csv.DictReader(stream))
+    assert [(row["chapter"], row["id"], row["computed"]) for row in table] == [
+        ("3", ENTRY["id"], "231.94"),
+        ("4", "b", "True"),
+    ]
+    assert table[0]["printed"] == ENTRY["printed"]
 
 
 def test_files_of_one_chapter_are_put_together(tmp_path):

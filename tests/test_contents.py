@@ -1,0 +1,126 @@
+"""The list of what there is in the dissertation, and what of it the ledger covers."""
+
+from pathlib import Path
+
+import pytest
+
+from facegear import contents
+from facegear.printed import PrintedValue, load_printed
+
+ROOT = Path(__file__).resolve().parents[1]
+CONTENTS = contents.load_contents(ROOT / "data" / "contents.yaml")
+PRINTED = {path.stem: load_printed(path) for path in sorted((ROOT / "data" / "printed").glob("*.yaml"))}
+
+
+def about(where):
+    return PrintedValue("a", where, "q", True, "h", "reproduced", "r")
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "numbers"),
+    [
+        ("Section 4.7.1, Fig. 4.10", "section", ("4.7.1",)),
+        ("Section 4.7.1, Fig. 4.10", "figure", ("4.10",)),
+        ("Section 4.6, Figs 4.4(a), 4.5(a)", "figure", ("4.4", "4.5")),
+        ("Sections 4.7.2 and 4.8, Fig. 4.14", "section", ("4.7.2", "4.8")),
+        ("after (Figs 3.10 and 3.11) and Fig. 3.5, caption", "figure", ("3.10", "3.11", "3.5")),
+        ("Figs 5.8 to 5.10", "figure", ("5.8", "5.9", "5.10")),
+        ("Sections 7.4.1 to 7.4.3 and Table 7.1", "section", ("7.4.1", "7.4.2", "7.4.3")),
+        ("Sections 7.4.1 to 7.4.3 and Table 7.1", "table", ("7.1",)),
+        ("Configuration 4.4, 3.1 mm", "figure", ()),
+    ],
+)
+def test_numbers_are_read_from_what_a_text_cites(text, kind, numbers):
+    assert contents.cited(text, kind) == numbers
+
+
+def test_other_kinds_are_refused():
+    with pytest.raises(ValueError, match="kind = 'page'"):
+        contents.cited("page 3", "page")
+
+
+def test_a_row_counts_for_its_section_by_number_or_by_equation():
+    rows = [about("Section 3.5, Fig. 3.5"), about("(3-9)"), about("Equation (3-18)"), about("(3-19)")]
+    counts = {entry.section.number: entry.rows for entry in contents.coverage(CONTENTS, rows)}
+    assert counts["3.5"] == 3
+    assert counts["3.6"] == 1
+    assert sum(counts.values()) == 4
+
+
+def test_a_table_and_a_section_of_one_number_are_told_apart():
+    covered = contents.coverage(CONTENTS, [about("Table 4.3")])
+    found = [(entry.section.kind, entry.section.number) for entry in covered if entry.rows]
+    assert found == [("table", "4.3")]
+
+
+def test_what_is_not_compared_says_why_or_shows():
+    text = contents.coverage_as_markdown(contents.coverage(CONTENTS, [about("Section 2.2")]))
+    lines = text.splitlines()
+    assert "| Section 2.2 | 1 |  |" in lines
+    assert any(line.startswith("| Section 3.1 |  | Overview") for line in lines)
+    assert "| Section 2.3 |  | **not compared yet** |" in lines
+
+
+def test_every_printed_value_names_a_place_that_exists():
+    listed = {
+        "section": {entry.number for entry in CONTENTS.sections},
+        "table": {entry.number for entry in CONTENTS.tables},
+        "figure": {entry.number for entry in CONTENTS.figures},
+    }
+    for name, values in PRINTED.items():
+        for value in values:
+            places = {kind: contents.cited(value.where, kind) for kind in listed}
+            unknown = [
+                number for kind, numbers in places.items() for number in numbers if number not in listed[kind]
+            ]
+            assert not unknown, (name, value.id, unknown)
+            by_equation = contents.coverage(CONTENTS, [value])
+            assert any(places.values()) or any(entry.rows for entry in by_equation), (name, value.id)
+
+
+def test_the_list_is_complete():
+    """Numbers run through without a gap, as many as the dissertation's lists have."""
+    figures = [tuple(map(int, figure.number.split("."))) for figure in CONTENTS.figures]
+    last = {1: 12, 3: 14, 4: 14, 5: 11, 6: 7, 7: 13, 8: 5}
+    assert figures == [(chapter, number) for chapter, count in last.items() for number in range(1, count + 1)]
+    assert [table.number for table in CONTENTS.tables] == ["4.1", "4.2", "4.3", "4.4", "7.1"]
+    chapters = [section.chapter for section in CONTENTS.sections]
+    counts = {chapter: chapters.count(chapter) for chapter in sorted(set(chapters))}
+    assert counts == {2: 5, 3: 9, 4: 10, 5: 11, 6: 5, 7: 8}
+    equations = [tuple(map(int, text.split("-"))) for s in CONTENTS.sections for text in s.equations]
+    ends = {2: 28, 3: 26, 4: 22, 5: 7, 6: 29, 7: 20}
+    for chapter, end in ends.items():
+        inside = [number for found, number in equations if found == chapter]
+        assert inside[0] == 1
+        assert inside[-1] == end
+        assert all(b == a + 1 for a, b in zip(inside[1:-1:2], inside[2::2], strict=True))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "must be a mapping"),
+        ("sections: []\ntables: []\n", "missing figures"),
+        ("sections: [{number: 4.10}]\ntables: []\nfigures: []\n", "must be in quotes"),
+        ('sections: [{number: "4.1", title: x}]\ntables: []\nfigures: []\n', "unknown title"),
+        (
+            'sections: [{number: "4.1", equations: ["4-1"]}]\ntables: []\nfigures: []\n',
+            "the first and the last",
+        ),
+        (
+            'sections: [{number: "4.1"}, {number: "4.1"}]\ntables: []\nfigures: []\n',
+            "4.1 stands more than once",
+        ),
+        ("sections: [\n", "contents.yaml"),
+    ],
+)
+def test_a_wrong_list_is_refused(tmp_path, text, message):
+    path = tmp_path / "contents.yaml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(contents.ContentsError, match=message):
+        contents.load_contents(path)
+
+
+def test_a_missing_list_is_named(tmp_path):
+    with pytest.raises(contents.ContentsError, match=r"contents\.yaml is missing"):
+        contents.load_contents(tmp_path / "contents.yaml")
