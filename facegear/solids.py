@@ -106,8 +106,24 @@ def face_gear_tooth(drive: Drive, along: int = 9, across: int = 6) -> Mesh:
     Mesh
         Closed: both flanks, top land, ends, and a bottom where the shaper's tip has cut.
     """
-    right = drive.tooth_flank(along, across, 1).points
-    left = drive.tooth_flank(along, across, -1).points
+    right, left = (drive.tooth_flank(along, across, flank).points for flank in (1, -1))
+    return tooth_between(right, left)
+
+
+def tooth_between(right: FloatArray, left: FloatArray) -> Mesh:
+    """Tooth closed by top land, ends and bottom between its two flanks.
+
+    Parameters
+    ----------
+    right, left : ndarray, shape (along, across, 3)
+        Points of the flanks [m], outwards and from top to bottom, as :meth:`Drive.tooth_flank` has them.
+
+    Returns
+    -------
+    Mesh
+        Closed; every edge is shared by two triangles.
+    """
+    along, across, _ = right.shape
     # Once around the section: up the left flank, over the top land, down the right one, back along the bottom.
     around = np.concatenate([left[:, ::-1], right, left[:, -1:]], axis=1)
     skin = _grid_triangles(*around.shape[:2])

@@ -1,0 +1,208 @@
+"""Files for other programs: the exact tooth surface as points, a closed tooth, tables.
+
+Lengths are in millimetres, which CAD programs take an STL file to be in; the frame is the face gear's own, Γ2: z is
+its axis, the tooth is centred on the −y axis.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from facegear.contact import ContactRegion
+from facegear.flanks import shaper_points, shaper_to_gear
+from facegear.geometry import Drive
+from facegear.parameters import FloatArray, integer_at_least
+from facegear.solids import Mesh, tooth_between
+from facegear.symbolic import meshing
+
+LEAST_LAND = 2e-6
+"""Narrowest top land of an exported tooth [m].
+
+Near R2 the true flanks may cross just below the nominal top (see :meth:`Drive.top_thickness`). There the tooth ends
+where it is this thick: a knife edge is no solid.
+"""
+_MM = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class ToothSurface:
+    """Points of both flanks of a tooth with their normals, in Γ2.
+
+    Attributes
+    ----------
+    points, normals : ndarray, shape (2, along, across, 3)
+        Coordinates [m] and unit vectors that point out of the tooth; first the flank that the equations of chapter 3
+        describe, then its mirror image. The second index runs outwards to R2, the third from top to bottom.
+    """
+
+    points: FloatArray
+    normals: FloatArray
+
+    def solid(self) -> Mesh:
+        """Tooth between the flanks, closed, its triangles counter-clockwise seen from outside."""
+        mesh = tooth_between(self.points[0], self.points[1])
+        return mesh if volume(mesh) > 0.0 else Mesh(mesh.vertices, mesh.triangles[:, ::-1])
+
+
+def tooth_surface(drive: Drive, along: int = 33, across: int = 17) -> ToothSurface:
+    """Lay a grid on both flanks of a face-gear tooth, from its top to where the shaper's tip generates it.
+
+    Parameters
+    ----------
+    drive : Drive
+    along, across : int
+        Points along the face width and across the profile of each flank, at least 2.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A number of points that is no integer of at least 2.
+    """
+    n, k = integer_at_least("along", along, 2), integer_at_least("across", across, 2)
+    region = drive.contact_region
+    fraction = np.linspace(0.0, 1.0, k)
+    parts = [
+        _line(region, float(r), fraction) for r in np.linspace(region.flank_start, region.outer_radius, n)
+    ]
+    points, normals = (np.stack([part[i] for part in parts]) for i in range(2))
+    mirror = np.array([-1.0, 1.0, 1.0])
+    return ToothSurface(np.stack([points, points * mirror]), np.stack([normals, normals * mirror]))
+
+
+def _line(region: ContactRegion, radius: float, fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Points and normals of one profile of the flank, from the top, or where it is thick enough, to the bottom."""
+
+    def points(roll: FloatArray) -> tuple[FloatArray, FloatArray]:
+        alpha = np.array([region.edge_angle(radius, value) for value in roll])
+        rotation = alpha - roll - region.space_half_angle
+        generating = shaper_points(region, region.position(alpha), roll)
+        return shaper_to_gear(region, generating, rotation), rotation
+
+    def half_land(roll: float) -> float:
+        return float(points(np.array([roll]))[0][0, 0]) - LEAST_LAND / 2.0
+
+    top, bottom = region.top_roll(radius), region.shaper_tip_roll
+    if half_land(top) < 0.0:
+        top = float(brentq(half_land, top, bottom, xtol=1e-14))
+    roll = top + (bottom - top) * fraction
+    place, rotation = points(roll)
+    s = meshing
+    normal = s.compiled(s.shaper_normal, s.theta_s, s.theta_0s)(roll, region.space_half_angle)
+    turned = shaper_to_gear(region, np.stack(np.broadcast_arrays(*normal), axis=-1), rotation)
+    # (3-3) points out of the shaper's tooth space, that is into the tooth.
+    return place, -turned / np.linalg.norm(turned, axis=-1, keepdims=True)
+
+
+def volume(mesh: Mesh) -> float:
+    """Volume of a closed mesh, positive if its triangles are counter-clockwise seen from outside [m³]."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
+def write_stl(mesh: Mesh, path: str | Path, title: str) -> Path:
+    """Write a mesh as a binary STL file in millimetres.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    path : str or Path
+        The file, ending in ``.stl``; its folder is made.
+    title : str
+        For the header, which holds 80 bytes.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    ValueError
+        If the path does not end in ``.stl``, or a triangle has no area in the file's single precision.
+    """
+    path = Path(path)
+    if path.suffix != ".stl":
+        raise ValueError(f"path must end in .stl, got {str(path)!r}")
+    corners = (mesh.vertices * _MM).astype("<f4")[mesh.triangles]
+    sides = corners[:, 1:].astype(float) - corners[:, :1]
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    size = np.linalg.norm(normals, axis=1, keepdims=True)
+    if not np.all(size > 0.0):
+        raise ValueError("mesh must have triangles of some area, got one that has none in single precision")
+    record = np.zeros(
+        len(corners), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")]
+    )
+    record["normal"], record["corners"] = normals / size, corners
+    # A header that starts with "solid" would make it a text file to some programs.
+    header = f"facegear, millimetres: {title}".encode("ascii", "replace")[:80].ljust(80)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header + np.array(len(corners), dtype="<u4").tobytes() + record.tobytes())
+    return path
+
+
+def write_points(surface: ToothSurface, path: str | Path) -> Path:
+    """Write the points of a tooth surface and their normals as CSV, lengths in millimetres.
+
+    Parameters
+    ----------
+    surface : ToothSurface
+    path : str or Path
+        The file; its folder is made.
+
+    Returns
+    -------
+    Path
+        The file written, with one row a point: flank (1 or −1), numbers along and across from 0, coordinates
+        x_mm, y_mm, z_mm, unit normal n_x, n_y, n_z.
+    """
+    flank, along, across = np.indices(surface.points.shape[:3])
+    columns: dict[str, Any] = {
+        "flank": 1 - 2 * flank.ravel(),
+        "along": along.ravel(),
+        "across": across.ravel(),
+    }
+    for i, axis in enumerate("xyz"):
+        columns[f"{axis}_mm"] = surface.points[..., i].ravel() * _MM
+    for i, axis in enumerate("xyz"):
+        columns[f"n_{axis}"] = surface.normals[..., i].ravel()
+    return write_table(columns, path)
+
+
+def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
+    """Write columns as CSV.
+
+    Parameters
+    ----------
+    columns : mapping of str to sequence
+        Heading with its unit to values; all of one length. Numbers are written to twelve digits.
+    path : str or Path
+        The file; its folder is made.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    ValueError
+        If the columns differ in length.
+    """
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    with temporary.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        for row in zip(*columns.values(), strict=True):
+            writer.writerow(f"{v:.12g}" if isinstance(v, float | np.floating) else v for v in row)
+    temporary.replace(path)
+    return path

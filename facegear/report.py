@@ -1,0 +1,302 @@
+"""What the report on a drive of one's own shows, as labelled arrays with units and tolerances.
+
+Every function takes a model, transverse or torsional, or what a drive file says
+(:class:`facegear.drive_file.DriveFile`), and returns what it found; nothing is written and nothing is drawn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from facegear.disk import reference_stiffness
+from facegear.drive_file import DriveFile
+from facegear.lobes import CriticalThickness, highest_lobes
+from facegear.maps import stability_map
+from facegear.modal import modal_expansion
+from facegear.models import Model, parameter_path
+from facegear.parameters import FloatArray, rad_per_s, rpm
+from facegear.plate import THICKNESS_RATIO_RANGE
+from facegear.reference import variable
+from facegear.tooth_design import root_stress, root_thickness
+from facegear.tracing import Tongue
+from facegear.transverse import Transverse, nominal_pinion_mass
+
+_growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
+_speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
+# A maximum is known to the square root of the accuracy of the values around it.
+_peak = partial(variable, units="rpm", atol=0.1)
+
+
+class Row(NamedTuple):
+    """One number of a table."""
+
+    quantity: str
+    value: float
+    unit: str
+
+
+def geometry(file: DriveFile) -> tuple[Row, ...]:
+    """Dimensions of teeth and body, contact ratios, masses, and what bearings are measured by.
+
+    Parameters
+    ----------
+    file : DriveFile
+
+    Returns
+    -------
+    tuple of Row
+        In mm, degrees, kg and N/m.
+    """
+    drive, body = file.drive, file.transverse.body
+    return (
+        Row("gear ratio N2/N1", 1.0 / drive.gear_ratio, "1"),
+        Row("pitch radius of the pinion", 1e3 * drive.pitch_radius, "mm"),
+        Row("inner radius of the teeth R1", 1e3 * drive.inner_radius, "mm"),
+        Row("outer radius of the teeth R2", 1e3 * drive.outer_radius, "mm"),
+        Row("face width L", 1e3 * drive.face_width, "mm"),
+        Row("angular pitch of the face gear", math.degrees(drive.angular_pitch), "°"),
+        Row("contact ratio after Tregold", drive.contact_ratio, "1"),
+        Row("contact ratio of the true sweep", drive.geometric_contact_ratio, "1"),
+        Row("thickness of the body", 1e3 * body.thickness, "mm"),
+        Row("mass of the body", body.mass, "kg"),
+        Row("mass of a solid pinion", nominal_pinion_mass(body), "kg"),
+        Row("stiffness of the disk that bearings are measured by", reference_stiffness(body), "N/m"),
+        Row("bearing stiffness", file.transverse.bearing_stiffness, "N/m"),
+        Row("pinion mass", file.transverse.pinion_mass, "kg"),
+    )
+
+
+def strength(file: DriveFile) -> tuple[Row, ...]:
+    """Bending stress at the root of the pinion's tooth against what is allowed (4-20 to 4-22).
+
+    Parameters
+    ----------
+    file : DriveFile
+
+    Returns
+    -------
+    tuple of Row
+        Root thickness [mm], stress, allowable stress [MPa], their ratio [-], safe if above 1.
+    """
+    duty, drive = file.requirements, file.drive
+    stress = root_stress(drive, duty.power, duty.pinion_speed)
+    allowed = file.transverse.body.material.yield_strength / duty.safety_factor
+    return (
+        Row("root thickness of the pinion's tooth", 1e3 * root_thickness(drive), "mm"),
+        Row("largest stress at the root", 1e-6 * stress, "MPa"),
+        Row("allowable stress", 1e-6 * allowed, "MPa"),
+        Row("allowable over largest stress", allowed / stress, "1"),
+    )
+
+
+def describe(file: DriveFile) -> str:
+    """Parameters of a drive file as text, for the provenance of arrays."""
+    return f"{file.name}: {file.transverse}, {file.torsional}"
+
+
+# --- tongues and what lies between them -------------------------------------------------------------------------
+
+
+def tongue_table(found: Sequence[Tongue], parameters: str) -> xr.Dataset:
+    """Tongues of a model.
+
+    Parameters
+    ----------
+    found : sequence of Tongue
+        From :func:`facegear.tracing.tongues`.
+    parameters : str
+        For the provenance.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``tongue``: ``lower``, ``upper``, ``peak`` [rpm], ``largest_growth`` [1/s]. Labels in the attribute
+        ``labels``, separated by blanks.
+    """
+
+    def column(name: str) -> FloatArray:
+        return np.array([getattr(tongue, name) for tongue in found], dtype=float)
+
+    return xr.Dataset(
+        {
+            "lower": _speed("tongue", rpm(column("lower")), "Lower border"),
+            "upper": _speed("tongue", rpm(column("upper")), "Upper border"),
+            "peak": _peak("tongue", rpm(column("peak")), "Speed of the largest growth"),
+            "largest_growth": _growth("tongue", column("growth_rate"), "Largest growth rate of the tongue"),
+        },
+        coords={"tongue": np.arange(len(found))},
+        attrs={"parameters": parameters, "labels": " ".join(tongue.label for tongue in found)},
+    )
+
+
+def safe_windows(table: xr.Dataset, speed_range: tuple[float, float]) -> xr.Dataset:
+    """Intervals of speed between the tongues.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        From :func:`tongue_table`.
+    speed_range : tuple of float
+        Lowest and highest speed that the tongues were looked for in [rad/s].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``window``, ascending: ``lower``, ``upper`` [rpm].
+    """
+    low, high = rpm(speed_range[0]), rpm(speed_range[1])
+    starts = np.concatenate([[low], table["upper"].values])
+    stops = np.concatenate([table["lower"].values, [high]])
+    wide = stops - starts > 1e-9 * high
+    return xr.Dataset(
+        {
+            "lower": _speed("window", starts[wide], "Lower end of the window"),
+            "upper": _speed("window", stops[wide], "Upper end of the window"),
+        },
+        coords={"window": np.arange(int(wide.sum()))},
+        attrs={"parameters": table.attrs["parameters"]},
+    )
+
+
+# --- charts over speed ------------------------------------------------------------------------------------------
+
+
+def campbell(model: Model, found: Sequence[Tongue], speeds_rpm: ArrayLike, parameters: str) -> xr.Dataset:
+    """Mesh frequency against natural frequencies of the mean system and their combinations.
+
+    Parameters
+    ----------
+    model : Model
+    found : sequence of Tongue
+        Tongues of the model; their combinations are followed over speed.
+    speeds_rpm : array_like, shape (S,)
+        Speeds of the face gear [rpm].
+    parameters : str
+        For the provenance.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``mesh_frequency`` (speed_rpm), ``natural_frequency`` (mode, speed_rpm), ``combination`` (label, speed_rpm)
+        [Hz]: (ω_k ± ω_j)/(2πs), NaN where a mode does not oscillate. Labels in the attribute ``labels``.
+    """
+    speeds = np.asarray(speeds_rpm, dtype=float)
+    systems = [model.system(float(speed)) for speed in rad_per_s(speeds)]
+    means = [modal_expansion(system, 1).frequencies / (2 * math.pi) for system in systems]
+    natural = np.full((max(mean.size for mean in means), speeds.size), np.nan)
+    for i, mean in enumerate(means):
+        natural[: mean.size, i] = mean
+    kinds = {tongue.label: tongue.combination for tongue in found if tongue.combination.order > 0}
+    combined = [
+        (natural[c.j - 1] + (1 if c.kind == "sum" else -1) * natural[c.k - 1]) / c.order
+        for c in kinds.values()
+    ]
+    frequency = partial(variable, units="Hz", rtol=1e-8, atol=1e-6)
+    return xr.Dataset(
+        {
+            "mesh_frequency": frequency("speed_rpm", [1 / s.period for s in systems], "Mesh frequency"),
+            "natural_frequency": frequency(
+                ("mode", "speed_rpm"), natural, "Natural frequency of the mean system"
+            ),
+            "combination": frequency(
+                ("label", "speed_rpm"),
+                np.reshape(combined, (len(combined), speeds.size)),
+                "Combination of natural frequencies over its order",
+            ),
+        },
+        coords={
+            "speed_rpm": speeds,
+            "mode": np.arange(1, len(natural) + 1),
+            "label": np.arange(len(combined)),
+        },
+        attrs={"parameters": parameters, "labels": " ".join(kinds)},
+    )
+
+
+def growth_map(
+    model: Model, parameter: str, values: ArrayLike, speeds_rpm: ArrayLike, parameters: str, *, jobs: int = 1
+) -> xr.Dataset:
+    """Growth rates over speed and one parameter.
+
+    Parameters
+    ----------
+    model : Model
+    parameter : str
+        As for :func:`facegear.maps.stability_map`.
+    values : array_like, shape (V,)
+        Its values, in SI.
+    speeds_rpm : array_like, shape (S,)
+        Speeds of the face gear [rpm].
+    parameters : str
+        For the provenance.
+    jobs : int
+        Number of workers.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``growth_rate`` (parameter, speed_rpm) [1/s], unstable where positive.
+    """
+    speeds = np.asarray(speeds_rpm, dtype=float)
+    chart = stability_map(model, rad_per_s(speeds), parameter, values, jobs=jobs, progress=False)
+    name = parameter_path(model, parameter)[-1]
+    return xr.Dataset(
+        {"growth_rate": _growth((name, "speed_rpm"), chart.values, "Growth rate ln(max|α|)/T0")},
+        coords={name: np.asarray(values, dtype=float), "speed_rpm": speeds},
+        attrs={"parameters": f"{parameters}, swept = {parameter}"},
+    )
+
+
+# --- critical thickness -----------------------------------------------------------------------------------------
+
+
+class ThicknessVerdict(NamedTuple):
+    """Critical thickness of a body, or why there is none to be told.
+
+    Attributes
+    ----------
+    critical : CriticalThickness or None
+    reason : str
+        Empty, or what the search says.
+    """
+
+    critical: CriticalThickness | None
+    reason: str
+
+
+def critical_thickness(file: DriveFile, widest: float = 2.5) -> ThicknessVerdict:
+    """Thickness ratio above which the body is stable in its whole speed range.
+
+    μ, ζ, τ stay as they are, so that the bearing gets stiffer with the body, as in section 4.7.
+
+    Parameters
+    ----------
+    file : DriveFile
+    widest : float
+        It is looked for between 1/`widest` and `widest` times the file's thickness.
+
+    Returns
+    -------
+    ThicknessVerdict
+    """
+    model = file.transverse
+    here = model.body.thickness_ratio
+    lowest, highest = THICKNESS_RATIO_RANGE
+    searched = (max(lowest, here / widest), min(highest, here * widest))
+
+    def model_at(thickness_ratio: float) -> Transverse:
+        return replace(model, body=replace(model.body, thickness_ratio=thickness_ratio))
+
+    low, high = file.requirements.speed_range
+    try:
+        return ThicknessVerdict(highest_lobes(model_at, low, [high], searched)[0], "")
+    except ValueError as error:  # stable, or unstable, in all of the range: the message says which
+        return ThicknessVerdict(None, str(error))
