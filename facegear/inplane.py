@@ -1,4 +1,4 @@
-"""Plane stress of a spinning disk under forces at its rim that rest in space, and what it does to bending (6.2, 6.3).
+"""Plane stress of a spinning disk under forces at its rim that rest in space (section 6.2).
 
 A tangential force at the rim, at angle α, makes u_r = U sin k(θ-α), u_θ = V cos k(θ-α), σ_rr = S sin k(θ-α),
 σ_rθ = T cos k(θ-α), σ_θθ = H sin k(θ-α) in its kth harmonic (6-6, 6-22). A radial force makes the same functions of
@@ -21,19 +21,19 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from facegear.disk import unit_shape
-from facegear.parameters import FloatArray, finite_array, integer_at_least, nonnegative, positive, within
-from facegear.plate import Body, plate_quadrature
+from facegear.parameters import FloatArray, finite_array, integer_at_least, within
+from facegear.plate import Body
 
 Direction = Literal["tangential", "radial"]
-Following = Literal["follower", "dead"]
 
 HIGHEST_HARMONIC = 400
-# A force or a speed beyond these bounds is a mistake of units.
+# A force beyond this bound is a mistake of units.
 _MOST_FORCE = 1e8
-_FASTEST_RIM = 0.2
+FASTEST_SPIN = 0.2
+"""Largest Ω* [-]: beyond it the disk would burst or reach its first critical speed in the plane."""
 
 # Rows of a solution.
 _U, _V, _P, _Q = range(4)
@@ -66,7 +66,7 @@ class HarmonicField:
         if not np.all((x >= self.bore_ratio - 1e-12) & (x <= 1.0 + 1e-12)):
             raise ValueError(f"x must lie between the bore ratio {self.bore_ratio} and 1, got {x}")
         t = np.clip(1.0 - 2.0 * np.log(x) / math.log(self.bore_ratio), -1.0, 1.0)
-        basis = np.polynomial.chebyshev.chebvander(t, len(self.coefficients) - 1)
+        basis = chebyshev.chebvander(t, len(self.coefficients) - 1)
         return np.moveaxis(np.tensordot(basis, self.coefficients, axes=1), (-2, -1), (0, 1))
 
     def stresses(self, x: ArrayLike) -> FloatArray:
@@ -86,7 +86,7 @@ def _degree(bore_ratio: float, harmonic: int) -> int:
 
 
 @lru_cache(maxsize=1024)
-def _collocation(degree: int) -> tuple[FloatArray, FloatArray]:
+def collocation_points(degree: int) -> tuple[FloatArray, FloatArray]:
     """Points t_j = cos(πj/degree) and the matrix of derivatives at them."""
     t = np.cos(np.pi * np.arange(degree + 1) / degree)
     ends = np.ones(degree + 1)
@@ -98,7 +98,8 @@ def _collocation(degree: int) -> tuple[FloatArray, FloatArray]:
 
 
 @lru_cache(maxsize=1024)
-def _values_to_coefficients(degree: int) -> FloatArray:
+def values_to_coefficients(degree: int) -> FloatArray:
+    """Matrix from values at `collocation_points` to Chebyshev coefficients, shape (degree + 1, degree + 1)."""
     order = np.arange(degree + 1)
     ends = np.ones(degree + 1)
     ends[[0, -1]] = 0.5
@@ -117,8 +118,7 @@ def harmonic_field(bore_ratio: float, poissons_ratio: float, spin: float, harmon
     poissons_ratio : float
         ν [-].
     spin : float
-        Ω* = Ω2 a √(ρ/E) [-] (6-1), from 0 to 0.2. Beyond it the disk would burst or reach its first critical speed
-        in the plane.
+        Ω* = Ω2 a √(ρ/E) [-] (6-1), from 0 to `FASTEST_SPIN`.
     harmonic : int
         k, from 0 to 400.
 
@@ -133,10 +133,10 @@ def harmonic_field(bore_ratio: float, poissons_ratio: float, spin: float, harmon
     """
     within("bore_ratio", bore_ratio, 0.01, 0.99)
     within("poissons_ratio", poissons_ratio, 0.0, 0.5)
-    within("spin", spin, 0.0, _FASTEST_RIM)
+    within("spin", spin, 0.0, FASTEST_SPIN)
     k, nu = _checked_harmonic(harmonic, HIGHEST_HARMONIC), poissons_ratio
     degree = _degree(bore_ratio, k)
-    t, derivative = _collocation(degree)
+    t, derivative = collocation_points(degree)
     half = -math.log(bore_ratio) / 2
     size = degree + 1
     one = np.eye(size)
@@ -160,7 +160,7 @@ def harmonic_field(bore_ratio: float, poissons_ratio: float, spin: float, harmon
         system[place, place] = 1.0
     right[_Q * size, 0] = right[_P * size, 1] = 1.0
     values = np.linalg.solve(system, right).reshape(4, size, 2).transpose(1, 0, 2)
-    coefficients = np.tensordot(_values_to_coefficients(degree), values, axes=1)
+    coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
     coefficients.setflags(write=False)
     return HarmonicField(bore_ratio, poissons_ratio, k, coefficients)
 
@@ -219,7 +219,7 @@ class EdgeLoadStress:
         if not isinstance(self.body, Body):
             raise TypeError(f"body must be a Body, got {self.body!r}")
         within("force", self.force, -_MOST_FORCE, _MOST_FORCE, "N")
-        within("speed", self.speed, 0.0, _FASTEST_RIM / _spin_per_speed(self.body), "rad/s", hint="rpm?")
+        within("speed", self.speed, 0.0, FASTEST_SPIN / spin_per_speed(self.body), "rad/s", hint="rpm?")
         if integer_at_least("harmonics", self.harmonics, 0) > HIGHEST_HARMONIC:
             raise ValueError(
                 f"harmonics must be an integer from 0 to {HIGHEST_HARMONIC}, got {self.harmonics!r}"
@@ -231,7 +231,7 @@ class EdgeLoadStress:
     def harmonic(self, k: int) -> HarmonicField:
         """Return the field of harmonic k for unit stress at the rim, on unit outer radius."""
         body = self.body
-        spin = self.speed * _spin_per_speed(body)
+        spin = self.speed * spin_per_speed(body)
         return harmonic_field(body.bore_ratio, body.material.poissons_ratio, spin, k)
 
     def edge_stress(self, k: int) -> float:
@@ -311,148 +311,6 @@ class EdgeLoadStress:
         return radial, shear, hoop
 
 
-def _spin_per_speed(body: Body) -> float:
+def spin_per_speed(body: Body) -> float:
     """Ω*/Ω2 = a √(ρ/E) [s] (6-1)."""
     return body.outer_radius * math.sqrt(body.material.density / body.material.youngs_modulus)
-
-
-def complete_harmonics(body: Body) -> int:
-    """Largest harmonic that can couple two modes of a body, 2N."""
-    return 2 * body.nodal_diameters
-
-
-@dataclass(frozen=True, eq=False)
-class _Grid:
-    """Basis functions at the nodes of a quadrature over the disk, and along its rim, on unit outer radius.
-
-    Values and slopes have the shape (radii, angles, n) on the disk and (angles, n) along the rim. `weights` (radii,)
-    are those of ∫ x dx, averages over the angles are sums over their number.
-    """
-
-    x: FloatArray
-    weights: FloatArray
-    angles: FloatArray
-    by_radius: FloatArray
-    by_angle: FloatArray
-    rim: FloatArray
-    rim_by_radius: FloatArray
-    rim_by_angle: FloatArray
-
-
-@lru_cache(maxsize=64)
-def _grid(body: Body, harmonics: int) -> _Grid:
-    x, weights = plate_quadrature(body.bore_ratio)
-    # Products of two modes and a harmonic have at most 2N + K waves: with more points than that sums are exact.
-    count = complete_harmonics(body) + harmonics + 1
-    angles = 2 * np.pi * np.arange(count) / count
-
-    modes, radii, rim = body.modes, x[:, np.newaxis], np.ones(count)
-    return _Grid(
-        x,
-        weights,
-        angles,
-        unit_shape(modes, radii, angles, by_radius=1),
-        unit_shape(modes, radii, angles, by_angle=1),
-        unit_shape(modes, rim, angles),
-        unit_shape(modes, rim, angles, by_radius=1),
-        unit_shape(modes, rim, angles, by_angle=1),
-    )
-
-
-def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower") -> FloatArray:
-    """Stiffness K_f of the disk in the plane field of a force at its rim (6-26, 6-27), real basis.
-
-    Parameters
-    ----------
-    stress : EdgeLoadStress
-        The field; harmonics beyond 2N couple no modes and leave K_f as it is.
-    following : {"follower", "dead"}
-        Whether the force stays in the tangent plane of the bent rim, as the dissertation assumes, or keeps its
-        direction in space. K_f of a dead force is symmetric.
-
-    Returns
-    -------
-    ndarray, shape (n, n)
-        K_f [1/s²], divided by 2πρh as all matrices of (4-8); coordinates as :func:`facegear.disk.coordinates`.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is of the wrong kind.
-
-    Notes
-    -----
-    The weak form of the operator (6-23) is the work of the stresses on the slopes, symmetric, and the transverse part
-    of the rim load times the deflection at the rim, which is what a follower force adds.
-    """
-    if not isinstance(stress, EdgeLoadStress):
-        raise TypeError(f"stress must be an EdgeLoadStress, got {stress!r}")
-    if following not in ("follower", "dead"):
-        raise ValueError(f"following must be 'follower' or 'dead', got {following!r}")
-    body = stress.body
-    harmonics = min(stress.harmonics, complete_harmonics(body))
-    grid = _grid(body, harmonics)
-    used = EdgeLoadStress(body, stress.force, stress.speed, harmonics, stress.direction, stress.angle)
-    radial, shear, hoop = used.field(grid.x[:, np.newaxis] * body.outer_radius, grid.angles)
-    weights = grid.weights[:, np.newaxis] / grid.angles.size
-    x = grid.x[:, np.newaxis]
-    # σ·grad φ: radial and circumferential part
-    first = np.einsum("ra,ran->ran", weights * radial, grid.by_radius)
-    first += np.einsum("ra,ran->ran", weights * shear / x, grid.by_angle)
-    second = np.einsum("ra,ran->ran", weights * shear / x, grid.by_radius)
-    second += np.einsum("ra,ran->ran", weights * hoop / x**2, grid.by_angle)
-    stiffness = np.tensordot(grid.by_radius, first, axes=((0, 1), (0, 1)))
-    stiffness += np.tensordot(grid.by_angle, second, axes=((0, 1), (0, 1)))
-    if following == "follower":
-        radial, shear, _ = used.field(body.outer_radius, grid.angles)
-        slope = radial[:, np.newaxis] * grid.rim_by_radius + shear[:, np.newaxis] * grid.rim_by_angle
-        stiffness -= grid.rim.T @ slope / grid.angles.size
-    found: FloatArray = stiffness / (body.material.density * body.outer_radius**2)
-    return found
-
-
-@lru_cache(maxsize=4096)
-def unit_stiffness(
-    body: Body, speed: float, harmonics: int, following: Following, angles: tuple[float, ...]
-) -> FloatArray:
-    """Sum of K_f of equal tangential forces of 1 N at several angles [1/(s² N)], kept for each speed.
-
-    Parameters
-    ----------
-    body : Body
-    speed : float
-        Ω2 [rad/s].
-    harmonics : int
-        Largest k.
-    following : {"follower", "dead"}
-    angles : tuple of float
-        Of the forces [rad].
-
-    Returns
-    -------
-    ndarray, shape (n, n)
-    """
-    stresses = (EdgeLoadStress(body, 1.0, speed, harmonics, angle=angle) for angle in angles)
-    total: FloatArray = np.sum([edge_load_stiffness(stress, following) for stress in stresses], axis=0)
-    total.setflags(write=False)
-    return total
-
-
-def driving_force(body: Body, power: float, pinion_speed: float) -> float:
-    """Tangential force at the pinion's pitch circle, F_t = P/(Ω1 r_p) [N] (4-21).
-
-    Parameters
-    ----------
-    body : Body
-    power : float
-        P [W], 0 or greater.
-    pinion_speed : float
-        Ω1 at that power [rad/s].
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is not a number in its range.
-    """
-    speed = positive("power_speed", pinion_speed, "rad/s")
-    return nonnegative("power", power, "W") / (speed * body.drive.pitch_radius)

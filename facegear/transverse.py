@@ -30,7 +30,7 @@ from facegear.disk import (
     shape_vector,
     unit_shape,
 )
-from facegear.inplane import Following, driving_force, unit_stiffness
+from facegear.edge_stiffness import Following, driving_force, unit_stiffness
 from facegear.kinematics import ContactPath, mesh_period, phase_split
 from facegear.parameters import (
     FloatArray,

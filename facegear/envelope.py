@@ -1,0 +1,292 @@
+"""How much power a face gear bears: flutter of the disk alone, and the largest power at which a speed range is stable.
+
+A force that stays tangent to the bent rim feeds a wave which runs against it: while the rim's slope is s the force
+does work F s ∂w/∂t. In K_f of (6-27) that is the rim term of the mean shear, which couples a wave with itself only
+and makes ω² of the mode (m, n) complex,
+
+    ω² ∓ iε,    ε = n F_t R_mn(a)²/(2πρah),
+
+so that it grows at ε/(2ω) while the viscous disk takes away ξω²/2. The two are equal at ε = ξω³, at any speed: the
+loss belongs to the material and turns with it, and so do the waves. This holds for a disk alone; a pinion that holds
+the waves in place changes it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from facegear.disk import disk_matrices
+from facegear.edge_stiffness import Following, driving_force, unit_stiffness
+from facegear.floquet import growth_rate
+from facegear.parameters import FloatArray, positive, within
+from facegear.plate import Body
+from facegear.tracing import Tongue, tongues
+from facegear.transverse import Transverse
+
+# Powers, over the critical one of the disk alone, at which a disk is tried.
+_FIRST, _RATIO, _LAST = 1 / 8, 1.15, 100.0
+# The same for a whole drive, at which tongues are looked for.
+_LEVELS = (0.3, 0.6, 0.8, 1.0, 1.2, 1.5, 1.9, 2.4, 3.0)
+# Window in which the peak of a tongue is looked for as the power changes, relative to its speed.
+_WINDOW = 0.004
+_MOST_WINDOWS = 40
+
+
+def mode_critical_powers(body: Body, power_speed: float) -> FloatArray:
+    """Power at which each mode of the disk alone begins to flutter under a follower force, to first order.
+
+    Parameters
+    ----------
+    body : Body
+    power_speed : float
+        Ω1 at that power [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (M + 1, N + 1)
+        P = ξω³/(ε/P) [W]; infinite without nodal diameters, where the rim has no slope along the force.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `power_speed` is not a number greater than 0.
+    """
+    rim = np.stack([modes(1.0) for modes in body.modes], axis=1) / body.outer_radius
+    diameters = np.arange(body.nodal_diameters + 1)
+    material = body.material
+    growth = diameters * driving_force(body, 1.0, power_speed) * rim**2
+    growth /= 2 * math.pi * material.density * body.outer_radius * body.thickness
+    loss = material.viscous_loss_factor * body.eigenvalues**1.5
+    powers = np.full(growth.shape, math.inf)
+    np.divide(loss, growth, out=powers, where=growth > 0.0)
+    return powers
+
+
+def disk_growth_rate(
+    body: Body,
+    power: float,
+    power_speed: float,
+    speed: float,
+    *,
+    following: Following = "follower",
+    harmonics: int = 5,
+) -> float:
+    """Growth rate of the disk alone under one driving force: its largest eigenvalue's real part.
+
+    Parameters
+    ----------
+    body : Body
+    power, power_speed : float
+        P [W] at Ω1 [rad/s].
+    speed : float
+        Ω2 of the face gear [rad/s], 0 or greater.
+    following, harmonics
+        As `following` and `stress_harmonics` of :class:`facegear.transverse.Transverse`.
+
+    Returns
+    -------
+    float
+        [1/s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range.
+    """
+    damping, stiffness = disk_matrices(body, speed)
+    force = driving_force(body, power, power_speed)
+    stiffness = stiffness + force * unit_stiffness(body, speed, harmonics, following, (0.0,))
+    n = len(stiffness)
+    # In the state (scale·q, q') both halves are of one size.
+    scale = math.sqrt(float(np.abs(stiffness).max()))
+    state = np.block([[np.zeros((n, n)), scale * np.eye(n)], [-stiffness / scale, -damping]])
+    return float(np.linalg.eigvals(state).real.max())
+
+
+def critical_power(
+    body: Body,
+    power_speed: float,
+    speed: float,
+    *,
+    following: Following = "follower",
+    harmonics: int = 5,
+) -> float:
+    """Smallest power at which the disk alone is unstable.
+
+    Powers 15 % apart are tried upwards, and the first change of stability is then found as a root.
+
+    Parameters
+    ----------
+    body : Body
+        With a viscous loss factor above 0.
+    power_speed : float
+        Ω1 at that power [rad/s].
+    speed : float
+        Ω2 of the face gear [rad/s], 0 or greater.
+    following, harmonics
+        As `following` and `stress_harmonics` of :class:`facegear.transverse.Transverse`.
+
+    Returns
+    -------
+    float
+        [W]; infinite if the disk is stable up to 100 times the power at which a follower force makes a mode flutter.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range, or the disk has no damping, so that it is never
+        asymptotically stable.
+    """
+    if body.material.viscous_loss_factor == 0.0:
+        raise ValueError(
+            "viscous_loss_factor of the body's material must be greater than 0: without damping any power flutters"
+        )
+    unit = float(mode_critical_powers(body, power_speed).min())
+
+    def growth(share: float) -> float:
+        return disk_growth_rate(
+            body, share * unit, power_speed, speed, following=following, harmonics=harmonics
+        )
+
+    low, high = 0.0, _FIRST
+    while growth(high) <= 0.0:
+        if high > _LAST:
+            return math.inf
+        low, high = high, high * _RATIO
+    return unit * float(brentq(growth, low, high, xtol=1e-12, rtol=1e-12))
+
+
+@dataclass(frozen=True)
+class PowerLimit:
+    """Largest power at which a speed range is stable.
+
+    Attributes
+    ----------
+    power : float
+        [W]; 0 if the range is not stable even without power, infinite if no limit was found.
+    speed : float
+        Ω2 where it is lost first [rad/s], NaN if nowhere.
+    label : str
+        Modes and order of the instability there, as :attr:`facegear.tracing.Tongue.label`; empty if there is none.
+    """
+
+    power: float
+    speed: float
+    label: str
+
+
+def largest_power(
+    model: Transverse, lowest_speed: float, highest_speed: float, *, tolerance: float = 1e-3
+) -> PowerLimit:
+    """Largest power below which a drive is stable at all speeds of a range.
+
+    All tongues are looked for at powers that rise to 3 times the critical power of the disk alone, until there are
+    some. Each is followed down to the power at which its largest growth rate vanishes. Just below the smallest of
+    these all tongues are looked for once more, and followed if there are any, until there are none. What can be missed
+    is an instability that comes and goes between two of the powers tried below the result.
+
+    Parameters
+    ----------
+    model : Transverse
+        With a `power_speed`; its own power does not matter.
+    lowest_speed, highest_speed : float
+        Range of Ω2 [rad/s].
+    tolerance : float
+        Relative accuracy of the power, 1e-6 to 0.1.
+
+    Returns
+    -------
+    PowerLimit
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the model has no `power_speed`, the range is not two ascending positive numbers, or the tolerance is
+        outside its range.
+    ArithmeticError
+        If the peak of a tongue is lost.
+    """
+    if model.power_speed is None:
+        raise ValueError("model must have a power and a power_speed, got None")
+    within("tolerance", tolerance, 1e-6, 0.1)
+    low, high = (
+        positive("lowest_speed", lowest_speed, "rad/s"),
+        positive("highest_speed", highest_speed, "rad/s"),
+    )
+    unit = float(mode_critical_powers(model.body, model.power_speed).min())
+
+    def at(power: float) -> Transverse:
+        return replace(model, power=power)
+
+    if found := tongues(at(0.0), low, high):
+        worst = max(found, key=lambda tongue: tongue.growth_rate)
+        return PowerLimit(0.0, worst.peak, worst.label)
+    stable, level = 0.0, 0.0
+    for share in _LEVELS:
+        stable, level = level, share * unit
+        if found := tongues(at(level), low, high):
+            break
+    lowest = PowerLimit(math.inf, math.nan, "")
+    while found:
+        tips = [_tip(at, stable, level, tongue, (low, high), tolerance / 4) for tongue in found]
+        lowest = min(tips, key=lambda tip: tip.power)
+        level = lowest.power * (1 - tolerance)
+        found = tongues(at(level), low, high)
+    return lowest
+
+
+def _tip(
+    at: Callable[[float], Transverse],
+    stable: float,
+    unstable: float,
+    tongue: Tongue,
+    speed_range: tuple[float, float],
+    tolerance: float,
+) -> PowerLimit:
+    """Follow the largest growth rate of a tongue down to the power at which it vanishes."""
+    place = tongue.peak
+
+    def growth(power: float) -> float:
+        nonlocal place
+        place, value = _peak(at(power), place, speed_range)
+        return value
+
+    # Downwards in small steps, so that the peak is not lost.
+    step = (unstable - stable) / 8
+    high = low = unstable
+    while low > stable:
+        high, low = low, max(low - step, stable)
+        if growth(low) <= 0.0:
+            break
+    power = float(brentq(growth, low, high, rtol=tolerance)) if growth(high) > 0.0 >= growth(low) else low
+    growth(power)
+    return PowerLimit(power, place, tongue.label)
+
+
+def _peak(model: Transverse, guess: float, speed_range: tuple[float, float]) -> tuple[float, float]:
+    """Speed near a guess at which the growth rate is largest, and the growth rate there."""
+
+    def loss(speed: float) -> float:
+        return -growth_rate(model.system(speed))
+
+    lowest, highest = speed_range
+    centre = guess
+    for _ in range(_MOST_WINDOWS):
+        low, high = max(centre * (1 - _WINDOW), lowest), min(centre * (1 + _WINDOW), highest)
+        result = minimize_scalar(loss, bounds=(low, high), method="bounded", options={"xatol": 1e-5 * centre})
+        best, value = float(result.x), -float(result.fun)
+        margin = 0.02 * (high - low)
+        ends = [end for end in (low, high) if abs(best - end) < margin]
+        if not ends:
+            return best, value
+        (end,) = ends
+        if end in speed_range:
+            at_end = -loss(end)
+            return (end, at_end) if at_end >= value else (best, value)
+        centre = best
+    raise ArithmeticError(f"no largest growth rate near {guess:.6g} rad/s: the instability was lost")
