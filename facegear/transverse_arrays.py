@@ -193,7 +193,7 @@ def tongue_sections(
     low, high = rad_per_s(speeds_rpm[0]), rad_per_s(speeds_rpm[1])
     sections = borders(model, parameter, values, low, high, jobs=jobs)
     found = [section.tongues for section in sections]
-    return _sections(found, np.asarray(values, dtype=float), f"{describe(model)}, swept = {parameter}")
+    return tongue_table(found, np.asarray(values, dtype=float), f"{describe(model)}, swept = {parameter}")
 
 
 def stability_figure(
@@ -241,8 +241,8 @@ def stability_figure(
     return chart.assign(traced.data_vars).assign_attrs(labels=traced.attrs["labels"])
 
 
-def _sections(found: Sequence[Sequence[Tongue]], values: FloatArray, parameters: str) -> xr.Dataset:
-    """Rows of tongues of different numbers as arrays filled up with NaN."""
+def tongue_table(found: Sequence[Sequence[Tongue]], values: ArrayLike, parameters: str) -> xr.Dataset:
+    """Rows of tongues of different numbers as arrays filled up with NaN, as :func:`tongue_sections` returns them."""
     longest = max(1, *(len(row) for row in found))
 
     def table(name: str) -> FloatArray:
@@ -260,7 +260,7 @@ def _sections(found: Sequence[Sequence[Tongue]], values: FloatArray, parameters:
             "peak": variable(both, rpm(table("peak")), "Speed of the largest growth", "rpm", atol=0.1),
             "largest_growth": _growth(both, table("growth_rate"), "Largest growth rate of the tongue"),
         },
-        coords={"section": values, "tongue": np.arange(longest)},
+        coords={"section": np.asarray(values, dtype=float), "tongue": np.arange(longest)},
         attrs={
             "parameters": parameters,
             "labels": "\n".join(" ".join(tongue.label for tongue in row) for row in found),
