@@ -63,3 +63,15 @@ FIGURES: Mapping[str, StabilityFigure] = MappingProxyType(
     }
 )
 """Figures 4.4 and 4.5 with the parameters of their captions."""
+
+EXAMPLE_A = Transverse(
+    Body(Drive(26, 130, MODULE), thickness_ratio=0.05, bore_radius=0.05),
+    MeshLoad(stiffness=1.5, damping=1e-6, mass=0.8),
+)
+"""Example A of section 5.5; figures replace the pinion angles."""
+
+EXAMPLE_B = Transverse(
+    Body(Drive(31, 155, MODULE), thickness_ratio=0.07, bore_radius=0.05),
+    MeshLoad(stiffness=0.25, damping=1e-5, mass=1.0),
+)
+"""Example B of section 5.5; figures replace the pinion angles."""
