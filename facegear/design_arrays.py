@@ -16,13 +16,14 @@ from facegear.geometry import DEDENDUM, Drive
 from facegear.kinematics import ContactPath, SkewLine
 from facegear.lobes import CriticalThickness, Lobe, highest_lobes
 from facegear.models import replace_parameter
-from facegear.parameters import FloatArray, rpm
+from facegear.parameters import FloatArray, integer_at_least, rpm
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
 from facegear.reference import variable
 from facegear.tooth_design import root_stress, root_thickness, tooth_thickness
 from facegear.tracing import tongues
 from facegear.transverse import Transverse, shape_vector
+from facegear.transverse_arrays import growth_map, tongue_sections
 
 # Tips are traced to 1e-5 in h/a; the speed of a maximum follows to the root of the accuracy of its height.
 _RATIO, _TIP_SPEED = 2e-5, 0.5
@@ -163,7 +164,7 @@ def family_of_bodies(designs: Sequence[Sequence[BodyDesign]], highest_rpm: Seque
 
 
 def with_tips(chart: xr.Dataset, lobes: Sequence[Lobe]) -> xr.Dataset:
-    """Add the traced tips of lobes to a chart over speed and thickness ratio (Figs 4.9, 4.13).
+    """Add the traced tips of lobes to a chart over speed and thickness ratio.
 
     Parameters
     ----------
@@ -184,6 +185,54 @@ def with_tips(chart: xr.Dataset, lobes: Sequence[Lobe]) -> xr.Dataset:
             "tip", [float(rpm(lobe.speed)) for lobe in lobes], "Speed of the tip", "rpm", atol=_TIP_SPEED
         ),
     ).assign_attrs(tip_labels=" ".join(lobe.label for lobe in lobes))
+
+
+def thickness_figure(
+    model: Transverse,
+    lobes: Sequence[Lobe],
+    *,
+    thickness_range: tuple[float, float] = (0.025, 0.045),
+    speeds_rpm: tuple[float, float] = (50.0, 1000.0),
+    cells: int = 200,
+    sections: int = 6,
+    traced_rpm: float = 100.0,
+    jobs: int = 2,
+) -> xr.Dataset:
+    """Map of growth rates over speed and thickness ratio, with traced tongues and tips (one of Figs 4.9, 4.13).
+
+    Parameters
+    ----------
+    model : Transverse
+    lobes : sequence of Lobe
+        Tips to keep with the map.
+    thickness_range : tuple of float
+        Ends of the axis of h/a; the map has `cells` values, the lowest of them above its start.
+    speeds_rpm : tuple of float
+        Ends of the axis of speed [rpm]; `cells` values, the lowest of them above its start.
+    cells : int, optional
+        Values of the thickness ratio, and speeds.
+    sections : int, optional
+        Thickness ratios, evenly spread from end to end, at which tongues are traced.
+    traced_rpm : float, optional
+        Lowest speed at which tongues are traced [rpm].
+    jobs : int, optional
+        Number of processes.
+
+    Returns
+    -------
+    xarray.Dataset
+        As :func:`facegear.transverse_arrays.growth_map` and :func:`facegear.transverse_arrays.tongue_sections`, and
+        tips as from :func:`with_tips`.
+    """
+    integer_at_least("cells", cells, 2)
+    share = np.arange(1, cells + 1) / cells
+    (slow, fast), (thin, thick) = speeds_rpm, thickness_range
+    ratios = thin + (thick - thin) * share
+    chart = growth_map(model, slow + (fast - slow) * share, "thickness_ratio", ratios, jobs=jobs)
+    places = np.linspace(thin, thick, integer_at_least("sections", sections, 2))
+    traced = tongue_sections(model, "thickness_ratio", places, (traced_rpm, fast), jobs=jobs)
+    both = chart.assign(traced.data_vars).assign_attrs(labels=traced.attrs["labels"])
+    return with_tips(both, lobes)
 
 
 def lobe_near_tip(

@@ -24,6 +24,7 @@ from facegear.plotting.style import (
     styled,
 )
 
+_PAPER = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
 _RANGES = ((BLUE, "o"), (VERMILION, "s"))
 _SPEED = "speed of the face gear [rpm]"
 _TEETH = "number of pinion teeth $N_1$"
@@ -76,40 +77,72 @@ def root_stress(data: xr.Dataset, allowable: float) -> Figure:
 
 
 def _draw_tips(ax: Axes, chart: xr.Dataset) -> None:
+    """Tips that decide up to 300 rpm (lobe A of the text) and up to 1000 rpm (lobe B)."""
     labels = chart.attrs["tip_labels"].split()
-    for number, label in enumerate(labels):
+    for letter, number in zip("BA", range(len(labels)), strict=False):
         speed, ratio = float(chart["tip_speed"][number]), float(chart["tip_ratio"][number])
         ax.plot(speed, ratio, "v", color=VERMILION, markersize=6, zorder=4)
         ax.annotate(
-            f"{label}: {ratio:.4f}",
+            f"{letter} {labels[number]}: {ratio:.4f}",
             (speed, ratio),
             xytext=(0, 7),
             textcoords="offset points",
             ha="right" if speed > 700 else "center",
             fontsize=9,
             color=INK,
+            bbox=_PAPER,
         )
-
-
-def _finish(ax: Axes, chart: xr.Dataset) -> None:
-    for number in range(chart.sizes["tip"]):
-        ratio = float(chart["tip_ratio"][number])
-        end = 1000.0 if number == 0 else 300.0
+        end = 1000.0 if letter == "B" else 300.0
         ax.plot([0.0, end], [ratio, ratio], color=GREY, linestyle="--", linewidth=0.9, zorder=1)
+
+
+def _finish(ax: Axes) -> None:
     ax.set(xlabel=_SPEED, ylabel=_RATIO, xlim=(0, 1000))
     ax.grid(False)
 
 
+def _draw_zones(ax: Axes, chart: xr.Dataset) -> None:
+    """Name the safe zone above all tips, lobe C, and the zone below it, where a thin disk responds too much."""
+    bottom, top = ax.get_ylim()
+    critical = float(chart["tip_ratio"].max())
+    ax.text(12, (critical + top) / 2, "safe zone", color=GREEN, va="center", fontsize=11)
+    width = (chart["upper"] - chart["lower"]).fillna(0.0)
+    lowest = width.isel(section=0)
+    widest = int(lowest.argmax("tongue"))
+    # The widest lobe again on the section above, where its name stands.
+    label = chart.attrs["labels"].split("\n")[0].split()[widest]
+    above = chart.attrs["labels"].split("\n")[1].split().index(label)
+    place = chart.isel(section=1, tongue=above)
+    ax.annotate(
+        f"C {label}",
+        (float(place["upper"]), float(place["section"])),
+        xytext=(5, -9),
+        textcoords="offset points",
+        fontsize=9,
+        color=INK,
+        bbox=_PAPER,
+    )
+    ax.text(
+        990,
+        bottom + 0.02 * (top - bottom),
+        "response-\nunsafe\nzone",
+        color=VERMILION,
+        ha="right",
+        va="bottom",
+        fontsize=10,
+    )
+
+
 @styled
 def thickness_map(chart: xr.Dataset) -> Figure:
-    """Growth rates over speed and thickness ratio, with the traced tips that decide (Fig. 4.9a).
+    """Growth rates over speed and thickness ratio, with traced tongues, tips and zones (Figs 4.9, 4.13).
 
     Parameters
     ----------
     chart : xarray.Dataset
-        ``growth_rate`` (thickness_ratio, speed_rpm), and tips from :func:`facegear.design_arrays.with_tips`.
+        From :func:`facegear.design_arrays.thickness_figure`.
     """
-    figure, (ax,) = panels(1, 1, 4.6)
+    figure, (ax,) = panels(1, 1, 4.8)
     growth = chart["growth_rate"].values
     speed, ratio = chart["speed_rpm"].values, chart["thickness_ratio"].values
     mesh = ax.pcolormesh(
@@ -121,17 +154,25 @@ def thickness_map(chart: xr.Dataset) -> Figure:
         shading="nearest",
         rasterized=True,
     )
-    ax.contour(speed, ratio, growth, levels=[0.0], colors=INK, linewidths=0.7)
+    ax.contour(speed, ratio, growth, levels=[0.0], colors=INK, linewidths=0.6)
+    for number, height in enumerate(chart["section"].values):
+        row = chart.isel(section=number)
+        ax.hlines(
+            np.full(row.sizes["tongue"], height), row["lower"], row["upper"], color=VERMILION, linewidth=1
+        )
+        for side in ("lower", "upper"):
+            ax.plot(row[side], np.full(row.sizes["tongue"], height), ".", color=VERMILION, markersize=3)
+    ax.set_ylim(float(chart["section"][0]), max(float(ratio[-1]), float(chart["tip_ratio"].max()) + 0.0015))
+    _draw_zones(ax, chart)
     _draw_tips(ax, chart)
-    _finish(ax, chart)
-    ax.set_ylim(float(ratio[0]), float(ratio[-1]))
+    _finish(ax)
     figure.colorbar(mesh, ax=ax, label="growth rate [1/s]", pad=0.02)
     return figure
 
 
 @styled
 def thickness_sections(chart: xr.Dataset) -> Figure:
-    """Unstable intervals of speed at many thickness ratios, with the traced tips (Figs 4.9, 4.13).
+    """Unstable intervals of speed at many thickness ratios, with the traced tips.
 
     Parameters
     ----------
@@ -146,7 +187,7 @@ def thickness_sections(chart: xr.Dataset) -> Figure:
     for row, ratio in enumerate(section):
         _draw_row(ax, chart.isel(section=row), float(ratio), height, norm)
     _draw_tips(ax, chart)
-    _finish(ax, chart)
+    _finish(ax)
     ax.set_ylim(
         float(section[0]) - height / 2, max(float(section[-1]), float(chart["tip_ratio"].max())) * 1.04
     )
@@ -162,13 +203,8 @@ def _draw_row(ax: Axes, row: xr.Dataset, ratio: float, height: float, norm: Any)
         return
     lower, upper = found["lower"].values, found["upper"].values
     spans = list(zip(lower.tolist(), (upper - lower).tolist(), strict=True))
-    ax.broken_barh(
-        spans,
-        (ratio - height / 2, height),
-        facecolors=GROWTH(norm(found["largest_growth"].values)),
-        edgecolors=GROWTH(norm(found["largest_growth"].values)),
-        linewidth=0.6,
-    )
+    colours = GROWTH(norm(found["largest_growth"].values))
+    ax.broken_barh(spans, (ratio - height / 2, height), facecolors=colours, edgecolors=colours, linewidth=0.6)
 
 
 @styled
