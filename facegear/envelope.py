@@ -22,7 +22,8 @@ from scipy.optimize import brentq, minimize_scalar
 
 from facegear.disk import disk_matrices
 from facegear.edge_stiffness import Following, driving_force, unit_stiffness
-from facegear.floquet import growth_rate
+from facegear.floquet import Method, growth_rate
+from facegear.multiplier_curves import method_for
 from facegear.parameters import FloatArray, positive, within
 from facegear.plate import Body
 from facegear.tracing import Tongue, tongues
@@ -33,8 +34,8 @@ _FIRST, _RATIO, _LAST = 1 / 8, 1.15, 100.0
 # The same for a whole drive, at which tongues are looked for.
 _LEVELS = (0.3, 0.6, 0.8, 1.0, 1.2, 1.5, 1.9, 2.4, 3.0)
 # Window in which the peak of a tongue is looked for as the power changes, relative to its speed.
-_WINDOW = 0.004
-_MOST_WINDOWS = 40
+_WINDOW, _WIDEST = 0.004, 0.03
+_MOST_WINDOWS = 60
 
 
 def mode_critical_powers(body: Body, power_speed: float) -> FloatArray:
@@ -249,36 +250,43 @@ def _tip(
     tolerance: float,
 ) -> PowerLimit:
     """Follow the largest growth rate of a tongue down to the power at which it vanishes."""
+    method = method_for(at(unstable), *speed_range)
     place = tongue.peak
 
     def growth(power: float) -> float:
         nonlocal place
-        place, value = _peak(at(power), place, speed_range)
+        place, value = _peak(at(power), method, place, speed_range)
         return value
 
     # Downwards in small steps, so that the peak is not lost.
-    step = (unstable - stable) / 8
+    step = (unstable - stable) / 4
     high = low = unstable
     while low > stable:
         high, low = low, max(low - step, stable)
         if growth(low) <= 0.0:
             break
-    power = float(brentq(growth, low, high, rtol=tolerance)) if growth(high) > 0.0 >= growth(low) else low
+    else:
+        raise ArithmeticError(
+            f"tongue {tongue.label} goes on at a power of {stable:.6g} W, which was found stable"
+        )
+    power = float(brentq(growth, low, high, rtol=tolerance))
     growth(power)
     return PowerLimit(power, place, tongue.label)
 
 
-def _peak(model: Transverse, guess: float, speed_range: tuple[float, float]) -> tuple[float, float]:
+def _peak(
+    model: Transverse, method: Method, guess: float, speed_range: tuple[float, float]
+) -> tuple[float, float]:
     """Speed near a guess at which the growth rate is largest, and the growth rate there."""
 
     def loss(speed: float) -> float:
-        return -growth_rate(model.system(speed))
+        return -growth_rate(model.system(speed), method)
 
     lowest, highest = speed_range
-    centre = guess
+    centre, width = guess, _WINDOW
     for _ in range(_MOST_WINDOWS):
-        low, high = max(centre * (1 - _WINDOW), lowest), min(centre * (1 + _WINDOW), highest)
-        result = minimize_scalar(loss, bounds=(low, high), method="bounded", options={"xatol": 1e-5 * centre})
+        low, high = max(centre * (1 - width), lowest), min(centre * (1 + width), highest)
+        result = minimize_scalar(loss, bounds=(low, high), method="bounded", options={"xatol": 3e-5 * centre})
         best, value = float(result.x), -float(result.fun)
         margin = 0.02 * (high - low)
         ends = [end for end in (low, high) if abs(best - end) < margin]
@@ -288,5 +296,6 @@ def _peak(model: Transverse, guess: float, speed_range: tuple[float, float]) -> 
         if end in speed_range:
             at_end = -loss(end)
             return (end, at_end) if at_end >= value else (best, value)
-        centre = best
+        # Flutter of the mean system has no sharp peak, so that it may lie far away.
+        centre, width = best, min(2 * width, _WIDEST)
     raise ArithmeticError(f"no largest growth rate near {guess:.6g} rad/s: the instability was lost")
