@@ -14,6 +14,7 @@ from facegear.floquet import AdaptiveMagnus, error_estimate, multipliers, transi
 from facegear.gearboxes import DRIVE, FIGURES, GEAR_INERTIA, PINION_INERTIA
 from facegear.kinematics import ContactPath
 from facegear.parameters import rad_per_s, rpm
+from facegear.periodic import PeriodicSystem
 from facegear.torsional import (
     DEDENDUM,
     Gearbox,
@@ -158,6 +159,23 @@ def test_liouville(path):
     damping = system.fourier(1)[1].mean
     expected = math.exp(-system.period * np.trace(np.linalg.solve(system.mass, damping)))
     assert np.linalg.det(transition_matrix(system)) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("path", ["skew_line", "centroid"])
+def test_kept_fourier_series_are_those_of_the_assembled_matrices(path):
+    system = Torsional(BOX, path=path).system(70.0).shift(0.3).replace_loads(damping=[1e3, 4e3])
+    kept = system.fourier(5)
+    assembled = PeriodicSystem.fourier(system, 5)
+    for one, other in zip(kept, assembled, strict=True):
+        scale = np.abs(other.mean).max()
+        for name in ("mean", "cosine", "sine"):
+            assert getattr(one, name) == pytest.approx(getattr(other, name), abs=1e-12 * scale)
+
+
+def test_mesh_system_takes_springs_and_dampers_only():
+    system = Torsional(BOX).system(70.0)
+    with pytest.raises(ValueError, match="must be a spring and damper with total rate"):
+        replace(system, loads=[replace(load, rate="frozen") for load in system.loads])
 
 
 @settings(deadline=None, derandomize=True, max_examples=15)
