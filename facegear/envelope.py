@@ -36,6 +36,7 @@ _LEVELS = (0.3, 0.6, 0.8, 1.0, 1.2, 1.5, 1.9, 2.4, 3.0)
 # Window in which the peak of a tongue is looked for as the power changes, relative to its speed.
 _WINDOW, _WIDEST = 0.004, 0.03
 _MOST_WINDOWS = 60
+_MOST_TURNS = 30
 
 
 def mode_critical_powers(body: Body, power_speed: float) -> FloatArray:
@@ -234,7 +235,7 @@ def largest_power(
             break
     lowest = PowerLimit(math.inf, math.nan, "")
     while found:
-        tips = [_tip(at, stable, level, tongue, (low, high), tolerance / 4) for tongue in found]
+        tips = [_tip(at, stable, level, tongue, (low, high), tolerance / 2) for tongue in found]
         lowest = min(tips, key=lambda tip: tip.power)
         level = lowest.power * (1 - tolerance)
         found = tongues(at(level), low, high)
@@ -249,29 +250,22 @@ def _tip(
     speed_range: tuple[float, float],
     tolerance: float,
 ) -> PowerLimit:
-    """Follow the largest growth rate of a tongue down to the power at which it vanishes."""
+    """Follow a tongue down to its tip: in turn the power at which its speed is stable, and the worst speed there."""
     method = method_for(at(unstable), *speed_range)
-    place = tongue.peak
+    speed, power = tongue.peak, unstable
 
-    def growth(power: float) -> float:
-        nonlocal place
-        place, value = _peak(at(power), method, place, speed_range)
-        return value
+    def growth(value: float) -> float:
+        return growth_rate(at(value).system(speed), method)
 
-    # Downwards in small steps, so that the peak is not lost.
-    step = (unstable - stable) / 4
-    high = low = unstable
-    while low > stable:
-        high, low = low, max(low - step, stable)
-        if growth(low) <= 0.0:
-            break
-    else:
-        raise ArithmeticError(
-            f"tongue {tongue.label} goes on at a power of {stable:.6g} W, which was found stable"
-        )
-    power = float(brentq(growth, low, high, rtol=tolerance))
-    growth(power)
-    return PowerLimit(power, place, tongue.label)
+    for _ in range(_MOST_TURNS):
+        above = power
+        power = float(brentq(growth, stable, above, rtol=tolerance / 4))
+        if power > above * (1 - tolerance):
+            return PowerLimit(power, speed, tongue.label)
+        speed, value = _peak(at(power), method, speed, speed_range)
+        if growth(stable) >= 0.0 or value <= 0.0:
+            return PowerLimit(power, speed, tongue.label)
+    raise ArithmeticError(f"the tip of tongue {tongue.label} was not found in {_MOST_TURNS} turns")
 
 
 def _peak(
