@@ -1,0 +1,526 @@
+"""What the live explorer computes: a map at reading resolution in steps, and one cell of it in detail.
+
+A :class:`Study` says which numbers the reader may set, within which limits, and how they make a model. Everything
+here works without a screen; :mod:`facegear.plotting.explorer` puts controls and figures on it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from facegear.floquet import transition_matrix
+from facegear.labels import combination
+from facegear.maps import stability_map
+from facegear.models import Model, replace_parameter
+from facegear.parameters import FloatArray, finite, integer_at_least, positive
+from facegear.tracing import Tongue, tongues
+from facegear.transverse import Transverse, shape_vector
+
+ComplexArray = NDArray[np.complex128]
+Settings = Mapping[str, Any]
+"""Names of controls to their values."""
+
+READING_COLUMNS, READING_ROWS = 60, 40
+"""Speeds and values of a map at reading resolution."""
+
+UNSTABLE = 1e-8
+"""Growth in a period, max|α| − 1, from which a cell counts as unstable [-], as for tongues."""
+
+# Speeds begin here, as a part of the highest one: below, tongues are narrower than a column.
+_LOWEST = 1 / 20
+# Cells of the first stage lie this many columns and rows apart, and slow maps are filled so many columns at a time.
+_COLUMN_STEP, _ROW_STEP, _SLOW_COLUMNS = 3, 5, 3
+# Tongues are looked for within these factors of the speed of a cell, the next where they pass the ends.
+_WINDOWS = (1.04, 1.2)
+_RADII, _ANGLES = 25, 121
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that the reader sets.
+
+    Attributes
+    ----------
+    name : str
+        Key of the settings.
+    label : str
+        Symbol and unit as shown.
+    lowest, highest, value : float
+        Limits, and what it is at first, in the unit shown.
+    step : float
+        Distance between values that can be set, in the unit shown.
+    unit : float
+        SI value of the unit shown.
+    parameter : str, optional
+        The parameter of the model that this number is, as for :func:`facegear.models.replace_parameter`. One that
+        has it can stand on the vertical axis.
+    whole : bool
+        Whether it counts something.
+    when : tuple of str, optional
+        Name of a choice and the options of it under which the number matters; always if left out.
+    """
+
+    name: str
+    label: str
+    lowest: float
+    highest: float
+    value: float
+    step: float
+    unit: float = 1.0
+    parameter: str | None = None
+    whole: bool = False
+    when: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.lowest < self.highest or not self.lowest <= self.value <= self.highest:
+            raise ValueError(
+                f"value of {self.name} must lie between lowest={self.lowest!r} and highest={self.highest!r}, "
+                f"got {self.value!r}"
+            )
+        positive(f"step of {self.name}", self.step)
+        positive(f"unit of {self.name}", self.unit)
+
+    def matters(self, settings: Settings) -> bool:
+        """Whether the number changes anything under these settings."""
+        return not self.when or settings[self.when[0]] in self.when[1:]
+
+    def si(self, value: float) -> float | int:
+        """Turn a value shown into SI units, a whole one into an int."""
+        number = finite(self.name, value)
+        if not self.whole:
+            return number * self.unit
+        if not number.is_integer():
+            raise ValueError(f"{self.name} must be a whole number, got {value!r}")
+        return int(number)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of several that the reader picks.
+
+    Attributes
+    ----------
+    name : str
+        Key of the settings.
+    label : str
+        As shown.
+    options : tuple of str
+    value : str
+        The one picked at first.
+    """
+
+    name: str
+    label: str
+    options: tuple[str, ...]
+    value: str
+
+    def __post_init__(self) -> None:
+        if self.value not in self.options:
+            raise ValueError(f"value of {self.name} must be one of {self.options}, got {self.value!r}")
+
+
+Control = Quantity | Choice
+
+
+@dataclass(frozen=True)
+class Study:
+    """What is explored: controls, the axes of the map, and the model they make.
+
+    Attributes
+    ----------
+    controls : tuple of Quantity or Choice
+        At least one quantity with a `parameter`.
+    build : callable
+        Settings in SI units, that of `speed` among them, to a model. Refuses what is impossible with a TypeError,
+        ValueError or ArithmeticError whose message a reader can understand.
+    vertical : str
+        Name of the quantity on the vertical axis at first.
+    speed : Quantity
+        The highest speed on the horizontal axis; its label is that of the axis.
+    coordinates : tuple of str
+        Names of the model's coordinates, for models other than a disk.
+    """
+
+    controls: tuple[Control, ...]
+    build: Callable[[Settings], Model]
+    vertical: str
+    speed: Quantity
+    coordinates: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        names = [control.name for control in (*self.controls, self.speed)]
+        if len(set(names)) < len(names):
+            raise ValueError(f"controls must have names that differ, got {names}")
+        self.swept(self.vertical)
+
+    @property
+    def sweepable(self) -> tuple[Quantity, ...]:
+        """Quantities that can stand on the vertical axis."""
+        return tuple(c for c in self.controls if isinstance(c, Quantity) and c.parameter is not None)
+
+    def swept(self, name: str) -> Quantity:
+        """Find the quantity of a name that can stand on the vertical axis."""
+        for quantity in self.sweepable:
+            if quantity.name == name:
+                return quantity
+        raise ValueError(f"vertical must be one of {[q.name for q in self.sweepable]}, got {name!r}")
+
+    def settings(self, changes: Settings | None = None) -> dict[str, Any]:
+        """Values as shown: the first ones, with changes.
+
+        Raises
+        ------
+        ValueError
+            For a change of something that is no control.
+        """
+        first = {control.name: control.value for control in (*self.controls, self.speed)}
+        unknown = sorted(set(changes or {}) - set(first))
+        if unknown:
+            raise ValueError(f"settings must be among {', '.join(first)}, got {', '.join(unknown)}")
+        return first | dict(changes or {})
+
+    def model(self, settings: Settings) -> Model:
+        """Build the model of settings as shown.
+
+        Raises
+        ------
+        TypeError, ValueError, ArithmeticError
+            If they do not go together.
+        """
+        converted = {
+            control.name: (
+                control.si(settings[control.name])
+                if isinstance(control, Quantity)
+                else settings[control.name]
+            )
+            for control in (*self.controls, self.speed)
+        }
+        return self.build(converted)
+
+    def axes(
+        self, settings: Settings, vertical: str, columns: int = READING_COLUMNS, rows: int = READING_ROWS
+    ) -> tuple[FloatArray, FloatArray]:
+        """Speeds [rad/s] and values [SI] of a map.
+
+        Parameters
+        ----------
+        settings : mapping
+            As shown.
+        vertical : str
+            Name of the quantity on the vertical axis.
+        columns, rows : int, optional
+            Numbers of speeds and values, at least 2.
+
+        Returns
+        -------
+        speeds : ndarray, shape (columns,)
+            From a twentieth of the highest speed.
+        values : ndarray, shape (rows,)
+            Over the whole range of the quantity.
+        """
+        integer_at_least("columns", columns, 2)
+        integer_at_least("rows", rows, 2)
+        highest = float(self.speed.si(settings[self.speed.name]))
+        quantity = self.swept(vertical)
+        values = np.linspace(quantity.lowest, quantity.highest, rows) * quantity.unit
+        return np.linspace(_LOWEST * highest, highest, columns), values
+
+
+def map_stages(
+    model: Model, speeds: FloatArray, parameter: str, values: FloatArray
+) -> Iterator[xr.DataArray]:
+    """Compute a stability map in steps, coarse at first.
+
+    Parameters
+    ----------
+    model : Model
+    speeds : ndarray, shape (S,)
+        Ascending [rad/s].
+    parameter : str
+        As for :func:`facegear.maps.stability_map`.
+    values : ndarray, shape (V,)
+
+    Yields
+    ------
+    xarray.DataArray, shape (V, S)
+        Growth rates [1/s], with the period [s] of each speed as a coordinate. In the first, cells that are not yet
+        computed have the value of a neighbour; attribute ``computed`` counts the columns that are final.
+    """
+    columns = np.arange(min(_COLUMN_STEP // 2, speeds.size - 1), speeds.size, _COLUMN_STEP)
+    fast = _only_loads_change(model, float(speeds[-1]), parameter, values)
+    step = 1 if fast else _ROW_STEP
+    rows = np.arange(min(step // 2, values.size - 1), values.size, step)
+    coarse = _chart(model, speeds[columns], parameter, values[rows])
+    growth = coarse.values[_nearest(values.size, rows)][:, _nearest(speeds.size, columns)]
+    periods = np.array([model.system(float(speed)).period for speed in speeds])
+    final = np.zeros(speeds.size, dtype=bool)
+    final[columns] = fast
+
+    def stage() -> xr.DataArray:
+        return xr.DataArray(
+            growth.copy(),
+            dims=(str(coarse.dims[0]), "speed"),
+            coords={coarse.dims[0]: values, "speed": speeds, "period": ("speed", periods)},
+            name="growth_rate",
+            attrs={"units": "1/s", "computed": int(final.sum())},
+        )
+
+    yield stage()
+    missing = np.flatnonzero(~final)
+    size = missing.size if fast else _SLOW_COLUMNS
+    for start in range(0, missing.size, size):
+        part = missing[start : start + size]
+        growth[:, part] = _chart(model, speeds[part], parameter, values).values
+        final[part] = True
+        yield stage()
+
+
+def _chart(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
+    # One worker: starting others would take longer than the map.
+    return stability_map(model, speeds, parameter, values, jobs=1, progress=False)
+
+
+def _nearest(size: int, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
+    return np.asarray(np.abs(np.arange(size)[:, np.newaxis] - chosen).argmin(axis=1))
+
+
+def _only_loads_change(model: Model, speed: float, parameter: str, values: FloatArray) -> bool:
+    """Whether the constant matrices and the shape vectors stay along a column, which makes it fast."""
+    one, other = (replace_parameter(model, parameter, float(v)).system(speed) for v in values[[0, -1]])
+    return all(
+        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("mass", "damping", "stiffness")
+    ) and all(
+        np.array_equal(a.shape.coefficients, b.shape.coefficients)
+        for a, b in zip(one.loads, other.loads, strict=True)
+    )
+
+
+def unstable(chart: xr.DataArray) -> NDArray[np.bool_]:
+    """Find the cells of a map whose growth in a period is more than rounding, shape (V, S)."""
+    return np.asarray(np.expm1(chart.values * chart["period"].values) > UNSTABLE)
+
+
+@dataclass(frozen=True, eq=False)
+class CellDetail:
+    """One cell of a map.
+
+    Attributes
+    ----------
+    speed : float
+        [rad/s].
+    growth_rate : float
+        ln(max|α|)/T0 [1/s].
+    multipliers : ndarray of complex, shape (2n,)
+        Largest modulus first.
+    critical : complex
+        The largest one, of a conjugate pair that above the real axis.
+    motion : ndarray of complex, shape (n,)
+        Displacements of the critical motion at the beginning of a mesh period; real where it is largest.
+    tongue : Tongue or None
+        The interval of instability that the speed lies in, None if it is stable.
+    label : str or None
+        Its modes and order, None if stable.
+    searched : tuple of float
+        Speeds [rad/s] between which the tongue's borders were looked for.
+    deflection : xarray.DataArray or None
+        Of a disk: critical motion over ``radius`` [m] and ``angle`` [rad], complex, largest modulus 1.
+    """
+
+    speed: float
+    growth_rate: float
+    multipliers: ComplexArray
+    critical: complex
+    motion: ComplexArray
+    tongue: Tongue | None
+    label: str | None
+    searched: tuple[float, float]
+    deflection: xr.DataArray | None
+
+
+def cell_detail(model: Model, speed: float) -> CellDetail:
+    """Multipliers, critical motion and tongue of a model at one speed.
+
+    Parameters
+    ----------
+    model : Model
+    speed : float
+        [rad/s], greater than 0.
+
+    Returns
+    -------
+    CellDetail
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `speed` is not a number greater than 0.
+    """
+    speed = positive("speed", speed, "rad/s")
+    system = model.system(speed)
+    values, vectors = np.linalg.eig(transition_matrix(system))
+    # Of a conjugate pair rounding alone would decide.
+    order = np.lexsort((-values.imag, -np.abs(values).round(12)))
+    values, vectors = values[order], vectors[:, order]
+    motion = vectors[: system.size, 0]
+    radius = float(np.abs(values).max())
+    tongue, searched = None, (speed, speed)
+    if radius - 1.0 > UNSTABLE:
+        tongue, searched = _tongue_at(model, speed)
+    label = tongue.label if tongue else combination(system).label if radius - 1.0 > UNSTABLE else None
+    deflection = None
+    if isinstance(model, Transverse):
+        deflection, motion = _deflection(model, motion)
+    else:
+        motion = motion / motion[np.abs(motion).argmax()]
+    return CellDetail(
+        speed=speed,
+        growth_rate=math.log(radius) / system.period,
+        multipliers=values,
+        critical=complex(values[0]),
+        motion=motion,
+        tongue=tongue,
+        label=label,
+        searched=searched,
+        deflection=deflection,
+    )
+
+
+def _tongue_at(model: Model, speed: float) -> tuple[Tongue | None, tuple[float, float]]:
+    """Tongue around an unstable speed, looked for further away until both its borders are found."""
+    tongue, window = None, (speed, speed)
+    for factor in _WINDOWS:
+        window = (speed / factor, speed * factor)
+        try:
+            found = tongues(model, *window, threshold=UNSTABLE, hints=(speed,))
+        except ArithmeticError:
+            # Multipliers too large to be known to the threshold: no borders, but the cell still has its label.
+            return None, window
+        tongue = next((t for t in found if t.lower <= speed <= t.upper), None)
+        if tongue is None or (window[0] < tongue.lower and tongue.upper < window[1]):
+            break
+    return tongue, window
+
+
+def _deflection(model: Transverse, motion: ComplexArray) -> tuple[xr.DataArray, ComplexArray]:
+    """Deflection of the disk in a motion, and the motion to its scale and phase."""
+    body = model.body
+    radius = np.linspace(body.bore_radius, body.outer_radius, _RADII)
+    angle = np.linspace(0.0, 2.0 * np.pi, _ANGLES)
+    shape = shape_vector(body, radius[:, np.newaxis], angle)
+    values = shape @ motion
+    largest = values.flat[np.abs(values).argmax()]
+    data = xr.DataArray(
+        values / largest,
+        dims=("radius", "angle"),
+        coords={
+            "radius": ("radius", radius, {"units": "m"}),
+            "angle": ("angle", angle, {"units": "rad"}),
+        },
+        name="deflection",
+        attrs={"units": "1", "long_name": "deflection over its largest amplitude"},
+    )
+    return data, motion / largest
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A map and one cell of it, as the explorer shows them.
+
+    Attributes
+    ----------
+    study : Study
+    settings : mapping
+        As shown.
+    vertical : Quantity
+        On the vertical axis.
+    chart : xarray.DataArray
+        Complete map from :func:`map_stages`.
+    value : float
+        Of the vertical quantity in the cell [SI].
+    detail : CellDetail
+    """
+
+    study: Study
+    settings: Settings
+    vertical: Quantity
+    chart: xr.DataArray
+    value: float
+    detail: CellDetail
+
+
+def view(
+    study: Study, speed: float, value: float, vertical: str | None = None, changes: Settings | None = None
+) -> View:
+    """Compute what the explorer shows when the reader has clicked on a cell.
+
+    Parameters
+    ----------
+    study : Study
+    speed, value : float
+        Of the cell, as shown on the axes.
+    vertical : str, optional
+        Name of the quantity on the vertical axis; that of the study if left out.
+    changes : mapping, optional
+        Settings that differ from the first ones, as shown.
+
+    Returns
+    -------
+    View
+
+    Raises
+    ------
+    TypeError, ValueError, ArithmeticError
+        As the study refuses settings.
+    """
+    settings = study.settings(changes)
+    quantity = study.swept(study.vertical if vertical is None else vertical)
+    assert quantity.parameter is not None
+    model = study.model(settings)
+    for chart in map_stages(model, *_swept_axes(study, settings, quantity)):
+        last = chart
+    chosen = float(quantity.si(value))
+    detail = cell_detail(replace_parameter(model, quantity.parameter, chosen), speed * study.speed.unit)
+    return View(study, settings, quantity, last, chosen, detail)
+
+
+def _swept_axes(study: Study, settings: Settings, quantity: Quantity) -> tuple[FloatArray, str, FloatArray]:
+    speeds, values = study.axes(settings, quantity.name)
+    assert quantity.parameter is not None
+    return speeds, quantity.parameter, values
+
+
+def shown_only(study: Study, names: Sequence[str]) -> Study:
+    """Return the study with some of its controls, in the order given; the others keep their first values.
+
+    Parameters
+    ----------
+    study : Study
+    names : sequence of str
+        Names of controls.
+
+    Raises
+    ------
+    ValueError
+        For a name that is no control, or if what is on the vertical axis is not among them.
+    """
+    known = {control.name: control for control in study.controls}
+    missing = [name for name in names if name not in known]
+    if missing:
+        raise ValueError(f"names must be among {', '.join(known)}, got {', '.join(missing)}")
+    hidden = {
+        name: control.si(control.value) if isinstance(control, Quantity) else control.value
+        for name, control in known.items()
+        if name not in names
+    }
+
+    def build(settings: Settings) -> Model:
+        return study.build(hidden | dict(settings))
+
+    return replace(study, controls=tuple(known[name] for name in names), build=build)
