@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from facegear.floquet import AdaptiveMagnus, Method
 from facegear.models import Model, parameter_path, replace_parameter
 from facegear.parameters import integer_at_least, positive
-from facegear.periodic import PeriodicSystem
+from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import Array, chebyshev_coefficients, chebyshev_points
 from facegear.stepping import Family
 from facegear.tracing import Tongue
@@ -202,42 +202,52 @@ class _VariedFamily(Family):
         blocks = np.zeros((len(self._derivatives), fraction.size, 4 * n, 4 * n))
         blocks[..., : 2 * n, : 2 * n] = plain
         blocks[..., 2 * n :, 2 * n :] = plain
-        for number, derivative in enumerate(self._derivatives):
-            change = self._change(derivative, fraction)
-            blocks[number, :, 2 * n :, : 2 * n] = self._values[number] * (
-                single.scale @ change @ single.inverse_scale
+        changes = self._changes(fraction)
+        for number, value in enumerate(self._values):
+            blocks[number, :, 2 * n :, : 2 * n] = value * (
+                single.scale @ changes[number] @ single.inverse_scale
             )
         return blocks
 
-    def _change(self, by: SystemDerivative, fraction: Array) -> Array:
-        """d(T0 A)/dp at fractions (m,), shape (m, 2n, 2n)."""
+    def _changes(self, fraction: Array) -> Array:
+        """d(T0 A)/dp of each parameter at fractions (m,), shape (P, m, 2n, 2n)."""
         system = self._single.systems[0]
         n, period = system.size, system.period
-        mass = system.mass_matrix(fraction)
-        right = np.concatenate([system.stiffness_matrix(fraction), system.damping_matrix(fraction)], axis=-1)
-        accelerations = np.linalg.solve(mass, right)
-        d_mass, d_damping, d_stiffness = (
-            np.broadcast_to(matrix, mass.shape).copy() for matrix in (by.mass, by.damping, by.stiffness)
+        mass, damping, stiffness = (
+            np.broadcast_to(part[0], (fraction.size, n, n)) for part in self._single.assembled(fraction)
         )
-        for number, load in enumerate(system.loads):
-            phi = load.shape(fraction)
-            force = (phi if load.weight is None else phi * load.weight(fraction))[..., :, None]
-            dm, dc, dk = by.load_mass[number], by.load_damping[number], by.load_stiffness[number]
-            d_mass += dm * force * phi[..., None, :]
-            d_damping += dc * force * phi[..., None, :]
-            d_stiffness += dk * force * phi[..., None, :]
-            if load.rate == "total":
-                # φ̇ = φ'/T0 and φ̈ = φ''/T0² change with the period too.
-                shorter = by.period / period
-                slope, bend = load.slope(fraction)[..., None, :], load.curvature(fraction)[..., None, :]
-                d_stiffness += (dc - load.damping * shorter) / period * force * slope
-                d_damping += 2.0 * (dm - load.mass * shorter) / period * force * slope
-                d_stiffness += (dm - 2.0 * load.mass * shorter) / period**2 * force * bend
-        changed = np.concatenate([d_stiffness, d_damping], axis=-1) - d_mass @ accelerations
-        result = np.zeros((fraction.size, 2 * n, 2 * n))
-        result[:, :n, n:] = by.period * np.eye(n)
-        result[:, n:, :] = -by.period * accelerations - period * np.linalg.solve(mass, changed)
+        inverse = np.linalg.inv(mass)
+        accelerations = inverse @ np.concatenate([stiffness, damping], axis=-1)
+        dyads = [_dyads(load, fraction) for load in system.loads]
+        result = np.zeros((len(self._derivatives), fraction.size, 2 * n, 2 * n))
+        for number, by in enumerate(self._derivatives):
+            d_mass, d_damping, d_stiffness = (
+                np.broadcast_to(matrix, mass.shape).copy() for matrix in (by.mass, by.damping, by.stiffness)
+            )
+            # φ̇ = φ'/T0 and φ̈ = φ''/T0² change with the period too.
+            shorter = by.period / period
+            for i, (load, (plain, slope, bend)) in enumerate(zip(system.loads, dyads, strict=True)):
+                dm, dc, dk = by.load_mass[i], by.load_damping[i], by.load_stiffness[i]
+                d_mass += dm * plain
+                d_damping += dc * plain
+                d_stiffness += dk * plain
+                if load.rate == "total":
+                    d_stiffness += (dc - load.damping * shorter) / period * slope
+                    d_damping += 2.0 * (dm - load.mass * shorter) / period * slope
+                    d_stiffness += (dm - 2.0 * load.mass * shorter) / period**2 * bend
+            changed = np.concatenate([d_stiffness, d_damping], axis=-1) - d_mass @ accelerations
+            result[number, :, :n, n:] = by.period * np.eye(n)
+            result[number, :, n:, :] = -by.period * accelerations - period * inverse @ changed
         return result
+
+
+def _dyads(load: ContactLoad, fraction: Array) -> tuple[Array, Array, Array]:
+    """w φφᵀ, w φφ'ᵀ and w φφ''ᵀ of a load at fractions (m,), each of shape (m, n, n)."""
+    phi = load.shape(fraction)
+    force = (phi if load.weight is None else phi * load.weight(fraction))[..., :, None]
+    parts = (phi, load.slope(fraction), load.curvature(fraction))
+    first, second, third = (force * part[..., None, :] for part in parts)
+    return first, second, third
 
 
 def transition_derivatives(
