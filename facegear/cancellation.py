@@ -246,7 +246,7 @@ def weakened(model: Transverse, factor: float) -> Transverse:
 
 
 def tongue_of(model: Transverse, pair: WavePair, reach: float) -> Tongue | None:
-    """Strongest tongue close to the resonance of a pair of waves.
+    """Strongest tongue of its order close to the resonance of a pair of waves.
 
     Parameters
     ----------
@@ -263,7 +263,8 @@ def tongue_of(model: Transverse, pair: WavePair, reach: float) -> Tongue | None:
     centre = pair.speed(model)
     share = positive("reach", reach)
     found = tongues(model, centre * (1 - share), centre * (1 + share), threshold=1e-10)
-    return max(found, key=lambda tongue: tongue.growth_rate, default=None)
+    own = [t for t in found if (t.combination.kind, t.combination.order) == (pair.kind, pair.order)]
+    return max(own, key=lambda tongue: tongue.growth_rate, default=None)
 
 
 def pinion_couplings(
@@ -292,16 +293,11 @@ def pinion_couplings(
     TypeError, ValueError
         If a number is out of range or a load has a weight or a total rate.
     """
-    highest = integer_at_least("order", order, 1)
+    harmonic = integer_at_least("order", order, 1)
     if any(load.rate != "frozen" or load.weight is not None for load in system.loads):
         raise ValueError("system must have loads of frozen rate without weight")
     n = system.size
-    means, modulations = zip(*(_shape_products(load.shape, highest) for load in system.loads), strict=True)
-    mass, damping, stiffness = (
-        getattr(system, name)
-        + sum(getattr(load, name) * mean for load, mean in zip(system.loads, means, strict=True))
-        for name in ("mass", "damping", "stiffness")
-    )
+    mass, damping, stiffness = _mean_matrices(system)
     state = np.block(
         [
             [np.zeros((n, n)), np.eye(n)],
@@ -319,22 +315,33 @@ def pinion_couplings(
     if kind == "sum":
         b = int(np.abs(values - values[b].conj()).argmin())
     parts = []
-    for load, modulation in zip(system.loads, modulations, strict=True):
+    for load in system.loads:
+        modulation = _shape_products(load.shape, harmonic)
         strength = load.stiffness + load.damping * values[b] + load.mass * values[b] ** 2
         parts.append(-left[a] @ modulation @ right[:n, b] * strength)
     return np.asarray(parts, dtype=complex)
 
 
-def _shape_products(shape: PiecewiseChebyshev, order: int) -> tuple[Array, ComplexArray]:
-    """Mean of φφᵀ and its coefficient of e^{isωt}, each of shape (n, n)."""
+def _shape_products(shape: PiecewiseChebyshev, harmonic: int) -> ComplexArray:
+    """Coefficient of e^{isωt} of φφᵀ, s the harmonic, shape (n, n)."""
     nodes, weights, _ = gauss_rule(_NODES)
     edges = np.append(shape.breakpoints, shape.breakpoints[0] + 1.0)
     length = np.diff(edges)
     fractions = (edges[:-1, np.newaxis] + length[:, np.newaxis] * nodes).ravel()
-    share = np.outer(length, weights).ravel()
     phi = shape(fractions)
-    turning = share * np.exp(-2j * np.pi * order * fractions)
-    return (phi.T * share) @ phi, (phi.T * turning) @ phi
+    turning = np.outer(length, weights).ravel() * np.exp(-2j * np.pi * harmonic * fractions)
+    return np.asarray((phi.T * turning) @ phi, dtype=complex)
+
+
+def _mean_matrices(system: PeriodicSystem) -> tuple[Array, Array, Array]:
+    """Mass, damping and stiffness with the loads averaged over the period."""
+    means = [_shape_products(load.shape, 0).real for load in system.loads]
+
+    def averaged(name: str) -> Array:
+        loads = zip(system.loads, means, strict=True)
+        return np.asarray(getattr(system, name) + sum(getattr(load, name) * mean for load, mean in loads))
+
+    return averaged("mass"), averaged("damping"), averaged("stiffness")
 
 
 def interference(system: PeriodicSystem, k: int, j: int, kind: Kind = "sum", order: int = 1) -> float:
@@ -343,8 +350,8 @@ def interference(system: PeriodicSystem, k: int, j: int, kind: Kind = "sum", ord
     return float(np.abs(parts.sum()) / np.abs(parts).sum())
 
 
-def wave_content(model: Transverse, speed: float, mode: int) -> dict[int, float]:
-    """Parts of the nodal diameters in a mode of the mean system, by squared amplitude.
+def mode_content(model: Transverse, speed: float, mode: int) -> dict[tuple[int, int], float]:
+    """Parts of the disk's own modes in a mode of the mean system, by squared amplitude.
 
     Parameters
     ----------
@@ -356,15 +363,23 @@ def wave_content(model: Transverse, speed: float, mode: int) -> dict[int, float]
 
     Returns
     -------
-    dict of int to float
-        Nodal diameters |n| to their part; the parts add up to 1.
+    dict of (int, int) to float
+        Nodal circles and diameters (m, n) to their part; the parts add up to 1.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no such mode.
     """
     system = model.system(speed)
-    mass, _, stiffness = (series.mean for series in system.fourier(1))
-    _, modes = eigh((stiffness + stiffness.T) / 2.0, mass)
     number = integer_at_least("mode", mode, 1)
     if number > system.size:
-        raise ValueError(f"mode must be at most {system.size}, got {mode!r}")
-    squares = modes[:, number - 1] ** 2
-    diameters = np.array([coordinate.nodal_diameters for coordinate in coordinates(model.body)])
-    return {int(n): float(squares[diameters == n].sum() / squares.sum()) for n in np.unique(diameters)}
+        raise ValueError(f"mode must be at most {system.size}, the number of modes, got {mode!r}")
+    mass, _, stiffness = _mean_matrices(system)
+    _, modes = eigh((stiffness + stiffness.T) / 2.0, mass)
+    squares = modes[:, number - 1] ** 2 / (modes[:, number - 1] ** 2).sum()
+    parts: dict[tuple[int, int], float] = {}
+    for coordinate, square in zip(coordinates(model.body), squares.tolist(), strict=True):
+        key = (coordinate.nodal_circles, coordinate.nodal_diameters)
+        parts[key] = parts.get(key, 0.0) + square
+    return parts

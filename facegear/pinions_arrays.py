@@ -108,16 +108,22 @@ def _growth_table(model: Transverse, speeds_rpm: ArrayLike, angles: FloatArray, 
     return table
 
 
+def pitches(first: int, last: int, steps: int) -> FloatArray:
+    """Total angles from one whole number of face-gear teeth to another, in angular pitches with `steps` to each."""
+    count = integer_at_least("steps", steps, 1) * (last - first) + 1
+    return first + np.arange(count) / steps
+
+
 def angle_map(
     model: Transverse,
     speeds_rpm: ArrayLike,
-    teeth: tuple[int, int],
+    angles_in_pitches: ArrayLike,
     *,
-    steps: int = 12,
-    before: Sequence[float] = (0.0,),
+    fixed: Sequence[float] = (0.0,),
+    moving: Sequence[float] = (0.0,),
     jobs: int = 2,
 ) -> xr.Dataset:
-    """Growth rates over speed and the total angle of the last pinion (Figs 5.5, 5.6).
+    """Growth rates over speed and the total angle between two groups of pinions (Figs 5.5, 5.6).
 
     Parameters
     ----------
@@ -125,12 +131,12 @@ def angle_map(
         Disk and load.
     speeds_rpm : array_like
         Speeds of the face gear [rpm], ascending.
-    teeth : tuple of int
-        Whole teeth between the first pinion and the last one, from and to.
-    steps : int, optional
-        Total angles for each angular pitch; 1 for positioning angles only.
-    before : sequence of float, optional
-        Angles of all pinions but the last [°]; one at 0 if left out.
+    angles_in_pitches : array_like, shape (V,)
+        Total angles in angular pitches θ_N; whole numbers are positioning angles.
+    fixed : sequence of float, optional
+        Angles of the pinions that stay [°]; one at 0 if left out.
+    moving : sequence of float, optional
+        Angles of the others from the total angle [°]; one at it if left out.
     jobs : int, optional
         Number of workers.
 
@@ -139,25 +145,24 @@ def angle_map(
     xarray.Dataset
         ``growth_rate`` (total_angle, speed_rpm) [1/s], total_angle in degrees.
     """
-    first, last = (integer_at_least("teeth", number, 1) for number in teeth)
-    count = integer_at_least("steps", steps, 1) * (last - first) + 1
-    angles = (first + np.arange(count) / steps) * model.body.drive.angular_pitch
-    fixed = np.broadcast_to(np.radians(np.asarray(before, dtype=float)), (count, len(before)))
-    table = _growth_table(model, speeds_rpm, np.concatenate([fixed, angles[:, np.newaxis]], axis=1), jobs)
+    angles = finite_array("angles_in_pitches", angles_in_pitches) * model.body.drive.angular_pitch
+    staying = np.broadcast_to(np.radians(np.asarray(fixed, dtype=float)), (angles.size, len(fixed)))
+    turning = angles[:, np.newaxis] + np.radians(np.asarray(moving, dtype=float))
+    table = _growth_table(model, speeds_rpm, np.concatenate([staying, turning], axis=1), jobs)
     return xr.Dataset(
         {"growth_rate": _growth(("total_angle", "speed_rpm"), table, "Growth rate ln(max|α|)/T0")},
         coords={"total_angle": np.degrees(angles), "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
         attrs={
-            "parameters": f"{describe(model)}, pinions before the last = {tuple(before)} deg, "
-            f"teeth = {first} to {last} in steps of 1/{steps}"
+            "parameters": f"{describe(model)}, swept = total angle, pinions at {tuple(fixed)} deg and "
+            f"{tuple(moving)} deg from it"
         },
     )
 
 
 def phase_maps(
     model: Transverse, speeds_rpm: ArrayLike, teeth: Sequence[int], phases: ArrayLike, *, jobs: int = 2
-) -> xr.Dataset:
-    """Growth rates over speed and phase for several positioning angles (Fig. 5.7).
+) -> tuple[xr.Dataset, ...]:
+    """Growth rates over speed and phase, one map for each positioning angle (Fig. 5.7).
 
     Parameters
     ----------
@@ -174,18 +179,28 @@ def phase_maps(
 
     Returns
     -------
-    xarray.Dataset
-        ``growth_rate`` (teeth, phase, speed_rpm) [1/s].
+    tuple of xarray.Dataset
+        ``growth_rate`` (phase, speed_rpm) [1/s].
     """
     psi = finite_array("phases", phases)
     numbers = np.asarray([integer_at_least("teeth", number, 1) for number in teeth])
+    # Together: what belongs to a phase is prepared once.
     second = ((numbers[:, np.newaxis] + psi) * model.body.drive.angular_pitch).ravel()
     table = _growth_table(model, speeds_rpm, np.stack([np.zeros_like(second), second], axis=1), jobs)
-    growth = table.reshape(numbers.size, psi.size, -1)
-    return xr.Dataset(
-        {"growth_rate": _growth(("teeth", "phase", "speed_rpm"), growth, "Growth rate ln(max|α|)/T0")},
-        coords={"teeth": numbers, "phase": psi, "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
-        attrs={"parameters": f"{describe(model)}, swept = phase"},
+    return tuple(
+        xr.Dataset(
+            {"growth_rate": _growth(("phase", "speed_rpm"), rows, "Growth rate ln(max|α|)/T0")},
+            coords={"phase": psi, "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
+            attrs={"parameters": f"{describe(model)}, swept = phase, teeth = {number}"},
+        )
+        for number, rows in zip(numbers, table.reshape(numbers.size, psi.size, -1), strict=True)
+    )
+
+
+def with_tongues(chart: xr.Dataset, tongues_of_sections: xr.Dataset) -> xr.Dataset:
+    """Return a map together with traced tongues of some of its lines."""
+    return chart.assign(tongues_of_sections.data_vars).assign_attrs(
+        labels=tongues_of_sections.attrs["labels"]
     )
 
 
