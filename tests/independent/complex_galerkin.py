@@ -204,6 +204,124 @@ def multipliers(
     return np.linalg.eigvals(X * scale[:, None] / scale[None, :])
 
 
+def total_rate_multipliers(
+    disk: ComplexDisk,
+    pinion: Pinion,
+    speed: float,
+    period: float,
+    *,
+    m_p: float,
+    c_b: float,
+    k_b: float,
+    tolerance: float = 1e-12,
+) -> np.ndarray:
+    """Eigenvalues of the transition matrix when the pinion follows u = w(r_c(t), θ_c(t), t) itself.
+
+    With φ = R_mn(r_c) e^{inθc} and all loads over 2πρh the momentum p = η' + conj(φ) m u', u' = φη' + φ'η, obeys
+    p' = -C0 η' - K0 η - conj(φ) (c u' + k u) + conj(φ') m u'. It stays continuous where φ' jumps: no kicks.
+    """
+    _, C0, K0 = disk.constant_matrices(speed)
+    size = len(K0)
+    m, c, k = (load / (2 * np.pi * disk.rho * disk.h) for load in (m_p, c_b, k_b))
+    frequency = np.sqrt(np.abs(K0).max())
+    scale = np.concatenate([np.full(size, frequency), np.ones(size)])
+    X = np.eye(2 * size, dtype=complex) / scale[:, None]
+    for start, end in pairwise([*pinion.instants, 1.0]):
+        phi, slope = _shape_series(disk, pinion, start, end)
+
+        def rates(t: float, flat: np.ndarray, phi=phi, slope=slope) -> np.ndarray:
+            Y = flat.reshape(2 * size, 2 * size) / scale[:, None]
+            eta, p = Y[:size], Y[size:]
+            f, f_dot = phi(t / period), slope(t / period) / period
+            moved = f_dot @ eta
+            # (1 + m conj(φ) φ) η' = p - m conj(φ) φ'η, inverted after Sherman and Morrison.
+            right = p - m * np.outer(f.conj(), moved)
+            velocity = right - np.outer(f.conj(), m * (f @ right) / (1 + m * (f @ f.conj()).real))
+            u, u_dot = f @ eta, f @ velocity + moved
+            force = np.outer(f.conj(), c * u_dot + k * u) - np.outer(f_dot.conj(), m * u_dot)
+            return (np.concatenate([velocity, -C0 @ velocity - K0 @ eta - force]) * scale[:, None]).ravel()
+
+        solution = solve_ivp(
+            rates,
+            (start * period, end * period),
+            (X * scale[:, None]).ravel(),
+            method="DOP853",
+            rtol=tolerance,
+            atol=tolerance,
+        )
+        assert solution.success, solution.message
+        X = solution.y[:, -1].reshape(2 * size, 2 * size) / scale[:, None]
+    return np.linalg.eigvals(X * scale[:, None])
+
+
+def _shape_series(disk: ComplexDisk, pinion: Pinion, start: float, end: float):
+    """Series of R_mn(r_c) e^{inθc} in t/T0 on one smooth piece, and its derivative by t/T0."""
+    n = np.repeat(disk.waves, disk.M + 1)
+    points = chebyshev.chebpts1(81)
+    r, theta = pinion.position((start + end) / 2 + (end - start) / 2 * points)
+    radial = np.array([disk.radial(m, abs(q), r) for q in disk.waves for m in range(disk.M + 1)]).T
+    values = radial * np.exp(1j * np.outer(theta, n))
+    series = np.linalg.solve(chebyshev.chebvander(points, 80), values)
+    assert np.abs(series[-4:]).max() < 1e-12 * np.abs(series).max(), "the shape is not smooth on a piece"
+    slopes = chebyshev.chebder(series) * 2 / (end - start)
+
+    def at(coefficients: np.ndarray) -> Callable[[float], np.ndarray]:
+        return lambda x: chebyshev.chebval((2 * x - start - end) / (end - start), coefficients)
+
+    return at(series), at(slopes)
+
+
+def first_order_growth(
+    disk: ComplexDisk,
+    pinion: Pinion,
+    speed: float,
+    period: float,
+    pair: tuple[int, int],
+    order: int,
+    *,
+    m_p: float,
+    c_b: float,
+    k_b: float,
+) -> float:
+    """Growth rate of one sum resonance after Hsu: the pair (k, j) of the mean system alone, averaged to first order.
+
+    In the modes of the mean system, a_k' = λ_k a_k + c_kj e^{isωt} b, b' = conj(λ_j) b + c_jk e^{-isωt} a_k, where
+    b belongs to the conjugate of mode j and c holds the s-th Fourier coefficients of the periodic matrices.
+    """
+    M, C, K = disk.constant_matrices(speed)
+    n = np.repeat(disk.waves, disk.M + 1)
+    coefficients = {s: np.zeros_like(M) for s in (0, order, -order)}
+    points, weights = np.polynomial.legendre.leggauss(60)
+    for start, end in pairwise([*pinion.instants, 1.0]):
+        x = (start + end) / 2 + (end - start) / 2 * points
+        r, theta = pinion.position(x)
+        R = np.array([disk.radial(m, abs(q), r) for q in disk.waves for m in range(disk.M + 1)])
+        phi = R * np.exp(1j * np.outer(n, theta))
+        for s, total in coefficients.items():
+            weight = (end - start) / 2 * weights * np.exp(-2j * np.pi * s * x)
+            total += (phi.conj() * weight) @ phi.T / (2 * np.pi * disk.rho * disk.h)
+    M, C, K = M + coefficients[0] * m_p, C + coefficients[0] * c_b, K + coefficients[0] * k_b
+    size = len(M)
+    inverse = np.linalg.inv(M)
+    A = np.block([[np.zeros_like(M), np.eye(size)], [-inverse @ K, -inverse @ C]])
+    values, vectors = np.linalg.eig(A)
+    left = np.linalg.inv(vectors)
+    ascending = sorted(np.flatnonzero(values.imag > 0), key=lambda i: values[i].imag)
+    first = ascending[pair[0] - 1]
+    second = int(np.argmin(np.abs(values - values[ascending[pair[1] - 1]].conj())))
+
+    def coupling(i: int, j: int, s: int) -> complex:
+        load = m_p * values[j] ** 2 + c_b * values[j] + k_b
+        return complex(-left[i, size:] @ inverse @ (coefficients[s] * load) @ vectors[:size, j])
+
+    turning = 2j * np.pi * order / period
+    block = [
+        [values[first], coupling(first, second, order)],
+        [coupling(second, first, -order), values[second] + turning],
+    ]
+    return float(np.linalg.eigvals(block).real.max())
+
+
 def _radial_tables(
     disk: ComplexDisk, pinion: Pinion, start: float, end: float
 ) -> tuple[Callable[[float], np.ndarray], chebyshev.Chebyshev]:

@@ -19,10 +19,9 @@ from tqdm import tqdm
 
 from facegear import ContactPath
 from facegear.cases import CASE_1, CASE_2, FIGURES
-from facegear.models import replace_parameter
 from tests.independent import meshing_mpmath
-from tests.independent.complex_galerkin import Pinion, multipliers
-from tests.test_transverse import complex_disk, momentum_multipliers
+from tests.independent.complex_galerkin import Pinion, first_order_growth, multipliers, total_rate_multipliers
+from tests.test_transverse import complex_disk
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "anchors"
 ROUTE = (
@@ -36,12 +35,12 @@ MESH_ROUTE = (
     "tests/independent/meshing_mpmath.py: contact centroid from a shaper moved numerically, 30 digits"
 )
 TOTAL_ROUTE = (
-    "tests/test_transverse.py: momentum form of the total rate, p = q' + phi m u', without kicks, by DOP853, with the "
-    "package's disk matrices and shape vectors; tolerance 1e-8 of the spectral radius"
+    "tests/independent/complex_galerkin.py: momentum form of the total rate in complex exponentials, without kicks, by "
+    "DOP853 at 1e-12; tolerance 1e-8 of the spectral radius"
 )
 MEAN_ROUTE = (
     "tests/independent/complex_galerkin.py: complex form with its periodic matrices averaged over a mesh period; "
-    "centres of the bands only, their borders are held by the tests of Hsu's method"
+    "borders from the pair alone, averaged to first order with Fourier coefficients by quadrature"
 )
 RADIUS_TOLERANCE = 1e-8
 CELLS, HIGHEST_RPM = 200, 1000.0
@@ -152,10 +151,18 @@ def with_disk():
 
 
 def total(contact_ratio, places):
-    model = FIGURES["4.4a"].model(rate="total", contact_ratio=contact_ratio)
     for value, speed in places:
-        found = momentum_multipliers(replace_parameter(model, "stiffness", value), rpm(speed))
+        k_b = value * reference_stiffness(CASE_1)
         period = 2 * np.pi / (CASE_1.drive.gear_teeth * rpm(speed))
+        found = total_rate_multipliers(
+            complex_disk(CASE_1),
+            pinion(CASE_1, contact_ratio, 1),
+            rpm(speed),
+            period,
+            m_p=nominal_mass(CASE_1),
+            c_b=3e-6 * k_b,
+            k_b=k_b,
+        )
         yield growth(np.abs(found).max(), period, stiffness=value, speed_rpm=speed)
 
 
@@ -188,8 +195,8 @@ def mean_frequencies(body, speed, *, stiffness, damping, mass):
     return np.sort(found[found > 0])
 
 
-def centres():
-    """Speeds at which two frequencies of the mean system add up to the meshing frequency, μ = 0.25."""
+def hsu():
+    """Centres and borders of bands in which two frequencies of the mean system add up to meshing, μ = 0.25."""
     load = {"stiffness": 0.25, "damping": 3e-6, "mass": 1.0}
     for band, (k, j), between in (
         (5, (1, 8), (480, 580)),
@@ -201,7 +208,25 @@ def centres():
             frequencies = mean_frequencies(CASE_1, speed, **load)
             return CASE_1.drive.gear_teeth * rpm(speed) - frequencies[k - 1] - frequencies[j - 1]
 
-        yield anchor("centre", brentq(detuning, *between, xtol=1e-9), 1e-5, section=0.25, band=band)
+        centre = brentq(detuning, *between, xtol=1e-9)
+        yield anchor("centre", centre, 1e-5, section=0.25, band=band)
+
+        def rate(speed, k=k, j=j):
+            k_b = load["stiffness"] * reference_stiffness(CASE_1)
+            return first_order_growth(
+                complex_disk(CASE_1),
+                pinion(CASE_1, None, 1),
+                rpm(speed),
+                2 * np.pi / (CASE_1.drive.gear_teeth * rpm(speed)),
+                (k, j),
+                1,
+                m_p=load["mass"] * nominal_mass(CASE_1),
+                c_b=load["damping"] * k_b,
+                k_b=k_b,
+            )
+
+        for side, outside in (("lower", 0.9 * centre), ("upper", 1.1 * centre)):
+            yield anchor(side, brentq(rate, centre, outside, xtol=1e-8), 1e-4, section=0.25, band=band)
 
 
 def determinant(body, n, root):
@@ -309,7 +334,7 @@ FILES = {
         TOTAL_ROUTE,
         lambda: total(CASE_1.drive.geometric_contact_ratio, ((0.02, 530.0), (0.5, 660.0), (1.6, 900.0))),
     ),
-    "ch04_hsu": (MEAN_ROUTE, centres),
+    "ch04_hsu": (MEAN_ROUTE, hsu),
 }
 
 
