@@ -304,8 +304,16 @@ def bessel_stresses(
             rows = [[column[i] for column in bore] for i in (0, 1)]
             rows += [[column[i] for column in rim] for i in (2, 3)]
             loads = [0, 0, 0, 1]
-        factors = mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix(loads))
+        factors = _factors(rows, loads)
         return _sums(factors, [columns(x) for x in radii])
+
+
+def _factors(rows: Sequence[Sequence[Any]], loads: Sequence[int]) -> list[Any]:
+    """Factors of the terms that meet the conditions at the edges; terms of very different size are scaled first."""
+    scales = [max(abs(row[i]) for row in rows) for i in range(len(loads))]
+    scaled = [[value / scale for value, scale in zip(row, scales, strict=True)] for row in rows]
+    found = mpmath.lu_solve(mpmath.matrix(scaled), mpmath.matrix(list(loads)))
+    return [value / scale for value, scale in zip(found, scales, strict=True)]
 
 
 def _sums(factors: Any, columns: Sequence[Sequence[Sequence[Any]]]) -> list[list[float]]:
@@ -418,7 +426,7 @@ def michell_stresses(
         bore, rim = columns(bore_ratio), columns(1)
         rows = [[column[i] for column in bore] for i in (0, 1)]
         rows += [[column[i] for column in rim] for i in (2, 3)]
-        factors = mpmath.lu_solve(mpmath.matrix(rows), mpmath.matrix([0, 0, 0, 1]))
+        factors = _factors(rows, [0, 0, 0, 1])
         return _sums(factors, [columns(x) for x in radii])
 
 
