@@ -8,7 +8,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help environment book chapter test test-slow test-book lint format explorer bench references clean
+.PHONY: help environment book pdf chapter drive test test-slow test-book lint format explorer bench references clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -19,9 +19,16 @@ environment: ## create or update .venv (every target below does it first)
 book: environment ## execute what changed, check it, build the book
 	@$(PYTHON) tools/build.py
 
+pdf: environment ## print the book to build/facegear.pdf (needs Chromium)
+	@$(PYTHON) tools/build.py pdf && echo 'Printed: build/facegear.pdf'
+
 chapter: environment ## execute and check one notebook: make chapter NAME=03_geometry_and_meshing
 	@test -f 'notebooks/$(NAME).ipynb' || { echo 'There is no notebooks/$(NAME).ipynb. Say for example: make chapter NAME=03_geometry_and_meshing'; exit 2; }
 	@$(PYTHON) tools/build.py 'notebook:$(NAME)' && echo 'Executed: build/executed/$(NAME).ipynb'
+
+drive: environment ## report on a drive of your own: make drive FILE=my_drive.yaml
+	@test -f '$(FILE)' || { echo 'Say which file, for example: make drive FILE=data/drives/case_2.yaml'; exit 2; }
+	@$(PYTHON) tools/run_drive.py '$(FILE)'
 
 test: environment ## run the tests (a minute or so)
 	@$(PYTEST) -n 2 -m 'not slow and not book'

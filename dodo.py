@@ -29,6 +29,7 @@ EXECUTED = BUILD / "executed"
 SOURCE = BUILD / "book-src"
 PICTURES = BUILD / "pictures"
 PAGES = BUILD / "_build"
+PDF = BUILD / "facegear.pdf"
 
 DOIT_CONFIG = {
     "default_tasks": ["book"],
@@ -64,16 +65,21 @@ def files(folder: str, pattern: str) -> list[Path]:
 def inputs(notebook: Path) -> list[Path]:
     """Return the data files a notebook is checked against: those whose first number is its chapter's.
 
-    A file without a number belongs to no chapter, and a notebook that is not a chapter reads everything.
+    A file without a number belongs to no chapter, and a notebook that is not a chapter reads everything. Drive files
+    are read by the report on a drive alone, which reads nothing else but references of its own.
     """
 
     def number(path: Path) -> int | None:
         found = re.search(r"\d+", path.stem)
         return int(found.group()) if found else None
 
+    drives = files("data/drives", "*.yaml")
+    if notebook.stem == "your_drive":
+        return [*drives, *files("data", "drive_*")]
     chapter = number(notebook)
     everything = notebook.stem not in CHAPTERS
-    return [path for path in files("data", "*.*") if everything or number(path) == chapter]
+    others = (path for path in files("data", "*.*") if path not in drives)
+    return [path for path in others if everything or number(path) == chapter]
 
 
 def execute_notebook(notebook: Path) -> TaskFailed | None:
@@ -196,21 +202,11 @@ def write_config() -> Path:
     return path
 
 
-def build_pages() -> TaskFailed | None:
-    """Build the pages from scratch; any warning of Sphinx is a failure."""
-    # From scratch, because Sphinx repeats a warning only for pages it reads anew: after a failed run the
-    # next one would pass.
-    shutil.rmtree(PAGES, ignore_errors=True)
+def run_sphinx(output: Path, *options: str) -> TaskFailed | None:
+    """Build pages from scratch into a folder; any warning of Sphinx is a failure."""
     command = [str(Path(sysconfig.get_path("scripts")) / "jupyter-book"), "build", str(SOURCE)]
-    command += [
-        "--config",
-        str(write_config()),
-        "--path-output",
-        str(BUILD),
-        "-W",
-        "-n",
-        "--keep-going",
-    ]
+    command += ["--config", str(write_config()), "--path-output", str(output)]
+    command += [*options, "-W", "-n", "--keep-going"]
     log = BUILD / "logs" / "sphinx.txt"
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("w", encoding="utf-8") as messages:
@@ -232,6 +228,27 @@ def build_pages() -> TaskFailed | None:
     return TaskFailed(f"{first} ({len(lines)} such lines in {log})")
 
 
+def build_pages() -> TaskFailed | None:
+    """Build the pages of the book."""
+    # From scratch, because Sphinx repeats a warning only for pages it reads anew: after a failed run the
+    # next one would pass.
+    shutil.rmtree(PAGES, ignore_errors=True)
+    return run_sphinx(BUILD)
+
+
+def print_pages() -> TaskFailed | None:
+    """Build the book as one page and print that."""
+    folder = BUILD / "single"
+    shutil.rmtree(folder, ignore_errors=True)
+    problem = run_sphinx(folder, "--builder", "singlehtml")
+    if problem is not None:
+        return problem
+    page = folder / "_build" / "singlehtml" / "intro.html"
+    command = [sys.executable, str(ROOT / "tools" / "print_book.py"), str(page), str(PDF)]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+    return None if done.returncode == 0 else TaskFailed(done.stderr.strip() or "the book was not printed")
+
+
 def task_book() -> dict:
     """Lay the pages out and build the book."""
     return {
@@ -248,5 +265,15 @@ def task_book() -> dict:
             ROOT / "uv.lock",
         ],
         "targets": [PAGES / "html" / "index.html"],
+        "io": {"capture": False},
+    }
+
+
+def task_pdf() -> dict:
+    """Print the book, all of it in one file."""
+    return {
+        "actions": [print_pages],
+        "file_dep": [PAGES / "html" / "index.html", ROOT / "tools" / "print_book.py"],
+        "targets": [PDF],
         "io": {"capture": False},
     }

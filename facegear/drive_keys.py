@@ -81,7 +81,7 @@ class Key:
             return f"text of 1 to {LONGEST_TEXT} characters"
         interval = f"{self.lowest:g} to {self.highest:g}{f' {self.unit}' if self.unit else ''}"
         what = {"integer": "a whole number", "numbers": f"a list of 1 to {MOST_PINIONS} numbers, each"}
-        return f"{what.get(self.kind, 'a number')} {'of 0 or ' if self.or_zero else 'from '}{interval}"
+        return f"{'0, or ' if self.or_zero else ''}{what.get(self.kind, 'a number')} from {interval}"
 
 
 @dataclass(frozen=True)

@@ -101,6 +101,38 @@ def _line(region: ContactRegion, radius: float, fraction: FloatArray) -> tuple[F
     return place, -turned / np.linalg.norm(turned, axis=-1, keepdims=True)
 
 
+def results_directory(
+    output_directory: str | Path,
+    drive_file: str | Path,
+    data_directory: str | Path,
+    build_directory: str | Path,
+) -> Path:
+    """Return the folder that the files of a report go to.
+
+    Parameters
+    ----------
+    output_directory : str or Path
+        What the user asks for; empty to leave it open.
+    drive_file : str or Path
+        The drive file, which names the folder.
+    data_directory, build_directory : str or Path
+        Folders of the project as the notebook knows them.
+
+    Returns
+    -------
+    Path
+        `output_directory` if given. Else, where the notebook runs in its own folder, so that the project's folders are
+        where it looks for them, ``drives/<name of the file>`` in `build_directory`; anywhere else
+        ``<name of the file>_results`` in the current folder.
+    """
+    if str(output_directory):
+        return Path(output_directory)
+    name = Path(drive_file).stem
+    if Path(data_directory, "drives").is_dir():
+        return Path(build_directory, "drives", name)
+    return Path(f"{name}_results")
+
+
 def volume(mesh: Mesh) -> float:
     """Volume of a closed mesh, positive if its triangles are counter-clockwise seen from outside [m³]."""
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))

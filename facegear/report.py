@@ -7,10 +7,10 @@ Every function takes a model, transverse or torsional, or what a drive file says
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from facegear.disk import reference_stiffness
 from facegear.drive_file import DriveFile
+from facegear.envelope import critical_power
 from facegear.lobes import CriticalThickness, highest_lobes
 from facegear.maps import stability_map
 from facegear.modal import modal_expansion
@@ -94,6 +95,32 @@ def strength(file: DriveFile) -> tuple[Row, ...]:
         Row("largest stress at the root", 1e-6 * stress, "MPa"),
         Row("allowable stress", 1e-6 * allowed, "MPa"),
         Row("allowable over largest stress", allowed / stress, "1"),
+    )
+
+
+def flutter(file: DriveFile) -> tuple[Row, ...]:
+    """Power at which the driving force alone makes the disk flutter (chapter 6), against the power of the drive.
+
+    Parameters
+    ----------
+    file : DriveFile
+
+    Returns
+    -------
+    tuple of Row
+        Power of a pinion and critical power at the lowest and the highest speed [kW], the smaller over the power of a
+        pinion [-]. Without viscous damping of the disk any power flutters, and the critical one is 0.
+    """
+    duty, body = file.requirements, file.transverse.body
+    critical = [
+        critical_power(body, duty.pinion_speed, speed) if body.material.viscous_loss_factor > 0.0 else 0.0
+        for speed in duty.speed_range
+    ]
+    return (
+        Row("power of a pinion", 1e-3 * duty.power, "kW"),
+        Row("critical power of the disk alone, lowest speed", 1e-3 * critical[0], "kW"),
+        Row("critical power of the disk alone, highest speed", 1e-3 * critical[1], "kW"),
+        Row("critical power over power of a pinion", min(critical) / duty.power, "1"),
     )
 
 
@@ -300,3 +327,74 @@ def critical_thickness(file: DriveFile, widest: float = 2.5) -> ThicknessVerdict
         return ThicknessVerdict(highest_lobes(model_at, low, [high], searched)[0], "")
     except ValueError as error:  # stable, or unstable, in all of the range: the message says which
         return ThicknessVerdict(None, str(error))
+
+
+# --- columns for tables -----------------------------------------------------------------------------------------
+
+Columns = dict[str, list[Any]]
+
+
+def summary_columns(rows: Sequence[Row]) -> Columns:
+    """Columns quantity, value, unit."""
+    return {name: [getattr(row, name) for row in rows] for name in Row._fields}
+
+
+def frequency_columns(modes: xr.Dataset) -> Columns:
+    """Natural frequencies from :func:`facegear.disk_arrays.plate_modes`, one row a mode."""
+    circles, diameters = np.meshgrid(modes["circles"], modes["diameters"], indexing="ij")
+    return {
+        "nodal_circles": circles.ravel().tolist(),
+        "nodal_diameters": diameters.ravel().tolist(),
+        "frequency_Hz": modes["frequency"].values.ravel().tolist(),
+    }
+
+
+def tongue_columns(tables: Mapping[str, xr.Dataset]) -> Columns:
+    """Tongues of several models, from :func:`tongue_table`, one row a tongue."""
+    headings = {
+        "lower": "lower_rpm",
+        "upper": "upper_rpm",
+        "peak": "peak_rpm",
+        "largest_growth": "growth_per_s",
+    }
+    labels = [str(table.attrs["labels"]).split() for table in tables.values()]
+    return {
+        "model": _repeated(tables, "tongue"),
+        "tongue": [label for row in labels for label in row],
+        **_stacked(tables, headings),
+    }
+
+
+def window_columns(tables: Mapping[str, xr.Dataset]) -> Columns:
+    """Safe windows of several models, from :func:`safe_windows`, one row a window."""
+    return {
+        "model": _repeated(tables, "window"),
+        **_stacked(tables, {"lower": "lower_rpm", "upper": "upper_rpm"}),
+    }
+
+
+def change_columns(tables: Mapping[str, xr.Dataset]) -> Columns:
+    """Effects of changes on several models, from :func:`facegear.changes.effects_of_changes`, one row a change."""
+    headings = {
+        "width_slope": "width_per_percent_rpm",
+        "growth_slope": "growth_per_percent_per_s",
+        "width_after": "width_after_ten_percent_rpm",
+        "growth_after": "growth_after_ten_percent_per_s",
+    }
+    names = [str(table.attrs["changes"]).split("; ")[: table.sizes["change"]] for table in tables.values()]
+    return {
+        "model": _repeated(tables, "change"),
+        "change": [name for row in names for name in row],
+        **_stacked(tables, headings),
+    }
+
+
+def _repeated(tables: Mapping[str, xr.Dataset], dimension: str) -> list[str]:
+    return [name for name, table in tables.items() for _ in range(table.sizes[dimension])]
+
+
+def _stacked(tables: Mapping[str, xr.Dataset], headings: Mapping[str, str]) -> Columns:
+    return {
+        heading: [value for table in tables.values() for value in table[name].values.tolist()]
+        for name, heading in headings.items()
+    }

@@ -1,5 +1,6 @@
 """What stops a build, and what it then says; what is done again, and what is not."""
 
+import json
 import os
 import shutil
 import signal
@@ -58,6 +59,18 @@ def test_notebook_that_runs_appears_whole(tmp_path: Path) -> None:
     assert executed.cells[2].outputs[0].text == "4\n"
     assert str(tmp_path) not in str(executed)
     assert not list((tmp_path / "failed").iterdir())
+
+
+def test_controls_are_off_where_nobody_can_turn_them(tmp_path: Path) -> None:
+    notebook = write_notebook(tmp_path / "tiny.ipynb", "live_controls = True", "print(live_controls)")
+    content = nbformat.read(notebook, as_version=4)
+    content.cells[1].metadata["tags"] = ["parameters"]
+    nbformat.write(content, notebook)
+    done = run(notebook)
+    assert done.stdout.splitlines() == ["cell 1 of 2", "cell 2 of 2"], done.stderr
+    executed = nbformat.read(tmp_path / "executed" / "tiny.ipynb", as_version=4)
+    assert executed.cells[-1].outputs[0].text == "False\n"
+    assert "remove-cell" in executed.cells[-2].metadata["tags"]
 
 
 def test_failing_cell_stops_with_one_line_and_leaves_the_notebook(tmp_path: Path) -> None:
@@ -241,6 +254,30 @@ def test_only_what_changed_is_done_again(project: Path) -> None:
     (project / "facegear" / "module.py").write_text("a = 2\n", encoding="utf-8")
     assert build(project, "notebook").returncode == 0
     assert all(executed(project)[name] > times[name] for name in times)
+
+
+def inputs_of(project: Path, *notebooks: str) -> list[set[str]]:
+    """Names of the data files that notebooks depend on."""
+    script = (
+        "import json, sys, dodo; from pathlib import Path\n"
+        "print(json.dumps([[path.name for path in dodo.inputs(Path(name))] for name in sys.argv[1:]]))"
+    )
+    command = [sys.executable, "-c", script, *notebooks]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=project)
+    return [set(names) for names in json.loads(done.stdout)]
+
+
+def test_a_drive_file_is_read_by_the_report_on_a_drive_alone(project: Path) -> None:
+    data = project / "data"
+    for name in ("drives/case_4.yaml", "reference/ch04_map.nc", "reference/drive_tongues.nc", "plain.yaml"):
+        (data / name).parent.mkdir(exist_ok=True)
+        (data / name).write_text("", encoding="utf-8")
+    write_notebook(project / "notebooks" / "your_drive.ipynb", "print(3)")
+    chapter, ledger, report = inputs_of(project, "04_two.ipynb", "90_ledger.ipynb", "your_drive.ipynb")
+    assert chapter == {"ch04_map.nc"}
+    assert ledger >= {"ch04_map.nc", "drive_tongues.nc", "plain.yaml"}
+    assert "case_4.yaml" not in ledger
+    assert report == {"case_4.yaml", "drive_tongues.nc"}
 
 
 @pytest.mark.slow

@@ -161,6 +161,7 @@ def changes(data: xr.Dataset) -> Figure:
     place = -np.arange(len(names))
     ax.barh(place, slope, 0.6, color=np.where(slope < 0, GREEN, VERMILION))
     ax.axvline(0.0, color=INK, linewidth=0.9)
+    ax.set_axisbelow(True)
     ax.set_yticks(place, names)
     ax.set_xlabel("change of the unstable width for one percent more [rpm]")
     ax.grid(visible=False, axis="y")
