@@ -43,7 +43,7 @@ class TurningView:
         # Inside a script element only this sign could end it early.
         safe = specification.replace("<", "\\u003c")
         html = (
-            f'<div class="turning-view" role="img" aria-label="{escape(self.alt)}">'
+            f'<div class="turning-view" role="group" aria-label="{escape(self.alt)}">'
             f'<div class="turning-view-canvas" style="height:{self.height}px"></div>'
             f'<script type="application/json">{safe}</script></div>'
         )

@@ -1,0 +1,25 @@
+// What widgets and Sphinx leave unsaid to a screen reader.
+(function () {
+  // A slider takes its name from the label beside it, and the value it stands for from the readout.
+  function nameSliders() {
+    document.querySelectorAll(".widget-slider .noUi-handle:not([aria-label])").forEach(function (handle) {
+      const widget = handle.closest(".widget-slider");
+      const label = widget.querySelector(".widget-label");
+      const readout = widget.querySelector(".widget-readout");
+      handle.setAttribute("aria-label", label ? label.textContent.trim() : "position");
+      if (readout) {
+        readout.id = readout.id || "slider-readout-" + document.querySelectorAll("[id^=slider-readout-]").length;
+        handle.setAttribute("aria-describedby", readout.id);
+      }
+    });
+  }
+
+  document.addEventListener("DOMContentLoaded", function () {
+    // The entries are no list items, so that their frame is no list.
+    document.querySelectorAll(".citation-list[role=list]").forEach((list) => list.removeAttribute("role"));
+    if (document.querySelector('script[type="application/vnd.jupyter.widget-view+json"]')) {
+      nameSliders();
+      new MutationObserver(nameSliders).observe(document.body, { childList: true, subtree: true });
+    }
+  });
+})();
