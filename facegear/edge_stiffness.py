@@ -123,6 +123,48 @@ def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower
     return found
 
 
+def strong_form_stiffness(stress: EdgeLoadStress) -> FloatArray:
+    """K_f of a follower force on a disk at rest from the strong form of (6-23), a second route to the same matrix.
+
+    Stresses in equilibrium leave -σ : ∇∇w of the operator. It takes second derivatives of the modes where the weak
+    form takes slopes, and no term at the rim.
+
+    Parameters
+    ----------
+    stress : EdgeLoadStress
+        At speed 0: with inertia the stresses alone are not in equilibrium.
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+        As :func:`edge_load_stiffness`.
+
+    Raises
+    ------
+    ValueError
+        If the speed is not 0.
+    """
+    if stress.speed != 0.0:
+        raise ValueError(f"stress must be that of a disk at rest, got speed={stress.speed!r} rad/s")
+    body = stress.body
+    x, weights = plate_quadrature(body.bore_ratio)
+    count = complete_harmonics(body) + stress.harmonics + 1
+    angles, x = 2 * np.pi * np.arange(count) / count, x[:, np.newaxis]
+
+    def shape(by_radius: int, by_angle: int) -> FloatArray:
+        return unit_shape(body.modes, x, angles, by_radius=by_radius, by_angle=by_angle)
+
+    radius = x[:, :, np.newaxis]
+    radial, shear, hoop = (part[:, :, np.newaxis] for part in stress.field(x * body.outer_radius, angles))
+    curvature = radial * shape(2, 0)
+    curvature = curvature + 2 * shear * (shape(1, 1) / radius - shape(0, 1) / radius**2)
+    curvature = curvature + hoop * (shape(1, 0) / radius + shape(0, 2) / radius**2)
+    weighted = shape(0, 0) * (weights / count)[:, np.newaxis, np.newaxis]
+    work = np.tensordot(weighted, curvature, axes=((0, 1), (0, 1)))
+    found: FloatArray = -work / (body.material.density * body.outer_radius**2)
+    return found
+
+
 def unit_stiffness(
     body: Body, speed: float, harmonics: int, following: Following, angles: tuple[float, ...]
 ) -> FloatArray:
