@@ -146,6 +146,8 @@ class Study:
         The highest speed on the horizontal axis; its label is that of the axis.
     coordinates : tuple of str
         Names of the model's coordinates, for models other than a disk.
+    columns, rows : int
+        Speeds and values of the map, at least 2.
     """
 
     controls: tuple[Control, ...]
@@ -153,12 +155,16 @@ class Study:
     vertical: str
     speed: Quantity
     coordinates: tuple[str, ...] = ()
+    columns: int = READING_COLUMNS
+    rows: int = READING_ROWS
 
     def __post_init__(self) -> None:
         names = [control.name for control in (*self.controls, self.speed)]
         if len(set(names)) < len(names):
             raise ValueError(f"controls must have names that differ, got {names}")
         self.swept(self.vertical)
+        integer_at_least("columns", self.columns, 2)
+        integer_at_least("rows", self.rows, 2)
 
     @property
     def sweepable(self) -> tuple[Quantity, ...]:
@@ -204,9 +210,7 @@ class Study:
         }
         return self.build(converted)
 
-    def axes(
-        self, settings: Settings, vertical: str, columns: int = READING_COLUMNS, rows: int = READING_ROWS
-    ) -> tuple[FloatArray, FloatArray]:
+    def axes(self, settings: Settings, vertical: str) -> tuple[FloatArray, FloatArray]:
         """Speeds [rad/s] and values [SI] of a map.
 
         Parameters
@@ -215,8 +219,6 @@ class Study:
             As shown.
         vertical : str
             Name of the quantity on the vertical axis.
-        columns, rows : int, optional
-            Numbers of speeds and values, at least 2.
 
         Returns
         -------
@@ -225,12 +227,10 @@ class Study:
         values : ndarray, shape (rows,)
             Over the whole range of the quantity.
         """
-        integer_at_least("columns", columns, 2)
-        integer_at_least("rows", rows, 2)
         highest = float(self.speed.si(settings[self.speed.name]))
         quantity = self.swept(vertical)
-        values = np.linspace(quantity.lowest, quantity.highest, rows) * quantity.unit
-        return np.linspace(_LOWEST * highest, highest, columns), values
+        values = np.linspace(quantity.lowest, quantity.highest, self.rows) * quantity.unit
+        return np.linspace(_LOWEST * highest, highest, self.columns), values
 
 
 def map_stages(

@@ -20,6 +20,10 @@ from nbclient.exceptions import DeadKernelError
 from papermill.exceptions import PapermillExecutionError
 
 LONGEST_MESSAGE = 400
+# Nobody can turn a control while papermill runs, nor on the page that comes of it: a notebook that has live
+# controls shows a picture of them instead.
+WITHOUT_A_READER = {"live_controls": False}
+INJECTED = "injected-parameters"  # papermill's tag of the cell it adds
 
 
 class NotebookFailedError(Exception):
@@ -67,7 +71,8 @@ def execute(
     failed : Path
         Folder that receives the notebook as far as it came when a cell fails.
     parameters : mapping of str to str, optional
-        Papermill parameters; none leaves the values written in the notebook.
+        Papermill parameters; none leaves the values written in the notebook, but for `live_controls`, which is
+        off.
     on_cell : callable
         Called with the number of code cells that have run.
 
@@ -84,18 +89,23 @@ def execute(
     for left in output.parent.glob(f".{output.stem}.*.ipynb"):  # by a run that was killed
         left.unlink()
     unfinished = output.with_name(f".{output.stem}.{os.getpid()}.ipynb")
+    declared = papermill.inspect_notebook(notebook)
+    given = {name: value for name, value in WITHOUT_A_READER.items() if name in declared} | dict(
+        parameters or {}
+    )
     done = 0
 
-    def count(**_: object) -> None:
+    def count(cell: nbformat.NotebookNode, **_: object) -> None:
         nonlocal done
-        done += 1
-        on_cell(done)
+        if INJECTED not in cell.metadata.get("tags", []):
+            done += 1
+            on_cell(done)
 
     try:
         papermill.execute_notebook(
             notebook,
             unfinished,
-            parameters=dict(parameters or {}),
+            parameters=given,
             cwd=notebook.parent,
             progress_bar=False,
             on_cell_executed=count,
@@ -109,15 +119,18 @@ def execute(
         unfinished.replace(kept)
         message = f"{notebook.name}, code cell {done + 1}: the kernel died (open {kept})"
         raise NotebookFailedError(message, "DeadKernelError", "") from problem
-    without_paths(unfinished)
+    made_presentable(unfinished)
     unfinished.replace(output)
 
 
-def without_paths(executed: Path) -> None:
-    """Remove this machine's paths, which papermill records, from an executed notebook."""
+def made_presentable(executed: Path) -> None:
+    """Remove this machine's paths, which papermill records, and hide the cell it adds from the page."""
     content = nbformat.read(executed, as_version=4)
     for name in ("input_path", "output_path"):
         content.metadata.get("papermill", {}).pop(name, None)
+    for cell in content.cells:
+        if INJECTED in cell.metadata.get("tags", []):
+            cell.metadata["tags"].append("remove-cell")
     nbformat.write(content, executed)
 
 

@@ -286,8 +286,9 @@ class MapExplorer:
         """
         if not points.xs:
             return
-        column = int(np.abs(self._chart["speed"] / self.study.speed.unit - points.xs[0]).argmin())
-        row = int(np.abs(self._chart[self._chart.dims[0]] / self._quantity.unit - points.ys[0]).argmin())
+        speeds, values = (self._chart[name].values for name in ("speed", self._chart.dims[0]))
+        column = int(np.abs(speeds / self.study.speed.unit - points.xs[0]).argmin())
+        row = int(np.abs(values / self._quantity.unit - points.ys[0]).argmin())
         self._place(column, row)
         self._show_cell()
 
