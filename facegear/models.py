@@ -141,7 +141,8 @@ def _takes_number(part: Any, name: str) -> bool:
 
 def _declared(part: object) -> dict[str, Any]:
     """Return declared types of the fields of a dataclass."""
-    return _type_hints(part.__class__)
+    kind: Any = type(part)
+    return _type_hints(kind)
 
 
 # Resolving annotations takes longer than anything else here.

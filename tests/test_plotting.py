@@ -7,7 +7,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from facegear import Drive, classical, floquet, meshing_arrays, solids, stability_arrays
+from facegear import Drive, accuracy_arrays, classical, floquet, meshing_arrays, solids, stability_arrays
 from facegear.plotting import interactive, meshing, schematics, stability, style
 
 DRIVE = Drive(26, 130, 3.175e-3)
@@ -127,18 +127,18 @@ DAMPED = stability_arrays.damped_charts(np.linspace(1.5, 2.5, 5), np.linspace(0.
         ),
         (
             lambda: stability.convergence(
-                {"(c) jumps": stability_arrays.convergence(GEARS, [8, 16, 32], "gears")},
+                {"(c) jumps": accuracy_arrays.convergence(GEARS, [8, 16, 32], "gears")},
                 {"(c) jumps": {"uniform": 0.87, "aligned": 1.99, "magnus": 3.94}},
             ),
             "3.94",
         ),
         (
-            lambda: stability.doubling(stability_arrays.doubling(GEARS, 16, 2, "gears")),
+            lambda: stability.doubling(accuracy_arrays.doubling(GEARS, 16, 2, "gears")),
             "change from half as many",
         ),
         (
             lambda: stability.estimates(
-                stability_arrays.estimates(GEARS, [("magnus", floquet.Magnus(16))], "gears")
+                accuracy_arrays.estimates(GEARS, [("magnus", floquet.Magnus(16))], "gears")
             ),
             "Magnus, aligned",
         ),

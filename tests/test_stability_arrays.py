@@ -18,9 +18,6 @@ def mathieu_at(frequency):
     "dataset",
     [
         arrays.swing(0.3, np.linspace(1.4, 2.6, 5), [2.0, 1.5], cycles=2),
-        arrays.convergence(GEARS, [8, 16], "gears"),
-        arrays.doubling(GEARS, 16, 2, "gears"),
-        arrays.estimates(GEARS, [("magnus", floquet.Magnus(16))], "gears"),
         arrays.transition_curves([0.0, 0.3], 2),
         arrays.meissner_borders([0.0, 0.3], 2, (0.3, 3.0)),
         arrays.chart(mathieu_at, [1.5, 2.0], [0.0, 0.3], "Mathieu"),
@@ -45,39 +42,6 @@ def test_multipliers_of_the_swing_are_reciprocal_and_the_motion_grows_by_the_lar
     # The starting state is the growing direction but for a decaying part.
     assert growing[-41:].max() / growing[-81:-40].max() == pytest.approx(largest, rel=2e-2)
     assert bounded.max() < 3.0
-
-
-def test_integration_agrees_with_the_independent_one():
-    right = independent.transition_matrix(independent.gear_pair(1.1, 1.563, 0.4, 0.02))
-    np.testing.assert_allclose(arrays.integrated_transition_matrix(GEARS), right, atol=1e-11)
-
-
-def test_errors_of_the_stepwise_rule_are_those_of_single_exponentials():
-    written_out = independent.gear_pair(1.1, 1.563, 0.4, 0.02)
-    right = independent.transition_matrix(written_out)
-    expected = [
-        independent.relative_error(independent.held(written_out, independent.equal_edges(q)), right)
-        for q in (16, 24)
-    ]
-    data = arrays.convergence(GEARS, [16, 24], "gears")
-    np.testing.assert_allclose(data.uniform.values, expected, atol=1e-11)
-    assert float(data.collocation) < 1e-11
-
-
-def test_doubling_repeats_the_trap_at_nine_sixteenths():
-    data = arrays.doubling(GEARS, 64, 3, "gears")
-    assert (data.change.values[1:] < 0.3 * np.append(np.inf, data.change.values[1:-1])).all()
-    assert data.error.values[-1] > 100 * data.change.values[-1]
-    # 0.563 and 9/16 are the same to these sub-intervals.
-    other = classical.gear_pair(1.1, 1.5625, droop=0.4, shaft_damping=0.02)
-    assert arrays.doubling(other, 64, 3, "gears").error.values[-1] < 10 * data.aligned_error.values[-1]
-
-
-def test_estimates_are_not_below_the_true_errors():
-    methods = [("aligned", floquet.AlignedStepwise(32)), ("uniform", floquet.Stepwise(512))]
-    data = arrays.estimates(GEARS, methods, "gears")
-    assert (data.estimate.values >= data.error.values).all()
-    assert data.attrs["labels"] == "aligned; uniform"
 
 
 @pytest.mark.parametrize("family", range(4))

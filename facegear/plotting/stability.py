@@ -86,7 +86,7 @@ def convergence(cases: Mapping[str, xr.Dataset], orders: Mapping[str, Mapping[st
     Parameters
     ----------
     cases : mapping of str to xarray.Dataset
-        Title of the panel to the arrays of :func:`facegear.stability_arrays.convergence`.
+        Title of the panel to the arrays of :func:`facegear.accuracy_arrays.convergence`.
     orders : mapping
         Fitted order of each method, for each title.
     """
@@ -126,7 +126,7 @@ def doubling(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`facegear.stability_arrays.doubling`.
+        From :func:`facegear.accuracy_arrays.doubling`.
     """
     figure, (ax,) = panels(1, 1, 3.9)
     counts = data["sub_intervals"].values
@@ -147,7 +147,7 @@ def estimates(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`facegear.stability_arrays.estimates`.
+        From :func:`facegear.accuracy_arrays.estimates`.
     """
     figure, (ax,) = panels(1, 1, 4.2)
     floor = 1e-16
