@@ -1,6 +1,7 @@
 """The printed book: `make pdf`, then `make test-book`."""
 
 import re
+import unicodedata
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -27,7 +28,9 @@ def reader() -> PdfReader:
 
 @pytest.fixture(scope="module")
 def text(reader: PdfReader) -> str:
-    return " ".join(" ".join(page.extract_text() for page in reader.pages).split())
+    # The browser's fonts set fi and fl as one sign.
+    found = unicodedata.normalize("NFKC", " ".join(page.extract_text() for page in reader.pages))
+    return " ".join(found.split())
 
 
 def titles() -> list[str]:
