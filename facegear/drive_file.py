@@ -161,7 +161,8 @@ def _check_keys(path: str, entries: Any, valid: Sequence[str]) -> None:
             told = f"did you mean {prefix}{near[0]}?"
         else:
             told = f"valid are {', '.join(valid)}"
-        raise ValueError(f"{prefix}{_cut(key)} = {_shown(entries[key])} is no key of a drive file: {told}")
+        name = _cut(key if key.isidentifier() else repr(key))
+        raise ValueError(f"{prefix}{name} = {_shown(entries[key])} is no key of a drive file: {told}")
 
 
 def _value(path: str, key: Key, value: Any) -> Any:

@@ -94,7 +94,8 @@ def _value(node: yaml.Node, path: str) -> Any:
             if not isinstance(key_node, yaml.ScalarNode):
                 raise PlainYamlError(f"line {line}: a key must be a word")
             key = str(key_node.value)
-            here = f"{path}.{key}" if path else key
+            name = key if key.isprintable() else repr(key)
+            here = f"{path}.{name}" if path else name
             if key in found:
                 raise PlainYamlError(f"line {line}: {here} is given twice")
             found[key] = _value(value_node, here)
