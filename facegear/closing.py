@@ -24,8 +24,9 @@ from facegear.piecewise import Array
 # Speeds at which the growth is looked at before its largest values are refined.
 _SPEEDS = 513
 _REFINED = 3
-# Relative accuracy of a root, and of the speed of a peak.
-_TOLERANCE = 1e-9
+# Relative accuracy of the speed of a peak, and of a root.
+_PEAK = 1e-9
+_ROOT = 1e-8
 # A root whose peak lies so close to an end of the range of speed, relative to its width, belongs to something outside.
 _EDGE = 1e-4
 
@@ -122,7 +123,7 @@ def largest_growth(
             lambda speed: -float(growth(np.array([speed]))[0]),
             bounds=(float(grid[i - 1]), float(grid[i + 1])),
             method="bounded",
-            options={"xatol": _TOLERANCE * high},
+            options={"xatol": _PEAK * high},
         )
         if -found.fun > largest:
             peak, largest = float(found.x), -float(found.fun)
@@ -230,5 +231,5 @@ def _zeros(function: Callable[[float], float], axis: Array, values: Array) -> li
         if heights[i + 1] == 0.0 and i + 2 < places.size:
             continue  # The next interval begins with this zero.
         a, b = float(places[i]), float(places[i + 1])
-        zeros.append(float(brentq(function, a, b, xtol=_TOLERANCE * abs(b), rtol=_TOLERANCE)))
+        zeros.append(float(brentq(function, a, b, xtol=_ROOT * abs(b), rtol=_ROOT)))
     return zeros

@@ -16,7 +16,7 @@ from facegear.gearboxes import DRIVE, ProportionalGearbox
 from facegear.hsu import resonance_bands
 from facegear.modal import standard_form
 from facegear.models import Model
-from facegear.parameters import FloatArray, integer_at_least, positive, rad_per_s, rpm
+from facegear.parameters import FloatArray, integer_at_least, nonnegative, positive, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.reference import variable
 from facegear.sensitivity import parameter_value
@@ -44,11 +44,14 @@ class ScaledModulation:
     Raises
     ------
     TypeError, ValueError
-        From the loads of the system, if `depth` is not a number of 0 or greater.
+        If `depth` is not a finite number of 0 or greater.
     """
 
     model: Model
     depth: float
+
+    def __post_init__(self) -> None:
+        nonnegative("depth", self.depth)
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a speed [rad/s]: C̄ + ε (C(t) − C̄), K̄ + ε (K(t) − K̄).

@@ -92,24 +92,16 @@ def variant_tongues(data: xr.Dataset) -> Figure:
         for number, label in enumerate(labels.split()):
             part = found.isel(tongue=number)
             low, high = float(part["lower"]), float(part["upper"])
-            ax.broken_barh(
-                [(low, high - low)],
-                (place - 0.36, 0.72),
-                facecolors=_GROWTH(norm(float(part["largest_growth"]))),
-                edgecolors=INK,
-                linewidth=0.5,
-            )
+            colour = _GROWTH(norm(float(part["largest_growth"])))
+            span = [(low, high - low)]
+            ax.broken_barh(span, (place - 0.36, 0.72), facecolors=colour, edgecolors=INK, linewidth=0.5)
             if row == 0:
-                ax.annotate(
-                    label,
-                    ((low + high) / 2, place + 0.4),
-                    xytext=(0, 2),
-                    textcoords="offset points",
-                    ha="center",
-                    fontsize=9,
-                )
+                # On two levels, because neighbours are narrower than their labels.
+                offset = (0, 2 + 12 * (number % 2))
+                above = ((low + high) / 2, place + 0.4)
+                ax.annotate(label, above, xytext=offset, textcoords="offset points", ha="center", fontsize=9)
     ax.set_yticks(range(len(names)), names[::-1])
-    ax.set(xlabel="speed of the face gear [rpm]", ylim=(-0.6, len(names) - 0.2))
+    ax.set(xlabel="speed of the face gear [rpm]", ylim=(-0.6, len(names) + 0.05))
     ax.grid(axis="y", visible=False)
     figure.colorbar(
         mpl.cm.ScalarMappable(norm, _GROWTH), ax=ax, label="largest growth rate [1/s]", pad=0.02, aspect=14
@@ -148,7 +140,7 @@ def hsu_errors(data: xr.Dataset, names: list[str], orders: list[float]) -> Figur
     axes[0].set_ylabel("error of Hsu's border [rpm]")
     axes[1].set_ylabel("the same over the width of the tongue")
     for ax in axes:
-        ax.set_xlabel("depth of modulation [% of the real one]")
+        ax.set_xlabel("depth of modulation [%]")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
@@ -244,7 +236,12 @@ def closing(data: xr.Dataset, xlabel: str) -> Figure:
     for number, label in enumerate(data.attrs["labels"].split("; ")):
         row = data.isel(tongue=number)
         colour, _ = _LOOKS[number]
-        ax.plot(data["damping"], row["growth_rate"], color=colour, label=label, linewidth=1.8)
+        found = row["closing_damping"].dropna("root").values
+        x = np.concatenate([data["damping"].values, found])
+        y = np.concatenate([row["growth_rate"].values, np.zeros(found.size)])
+        order = np.argsort(x)
+        ax.plot(x[order], y[order], color=colour, label=label, linewidth=1.6)
+        ax.plot(data["damping"], row["growth_rate"], ".", color=colour, markersize=4)
         for sign, face in ((1.0, colour), (-1.0, "white")):
             roots = row["closing_damping"].values[row["closes"].values == sign]
             ax.plot(
