@@ -75,3 +75,11 @@ EXAMPLE_B = Transverse(
     MeshLoad(stiffness=0.25, damping=1e-5, mass=1.0),
 )
 """Example B of section 5.5; figures replace the pinion angles."""
+
+POWER_SPEED_RPM = 5000.0
+"""Speed of the pinion at which section 6.4 gives powers [rpm]."""
+
+POWERS_HP: Mapping[str, tuple[float, ...]] = MappingProxyType(
+    {"6.6": (100.0, 300.0, 600.0), "6.7": (600.0, 800.0, 1000.0)}
+)
+"""Powers of the captions of Figs 6.6 (Case I, otherwise Fig. 4.4(a)) and 6.7 (Case II, Fig. 4.5(a)) [hp]."""
