@@ -18,7 +18,7 @@ from facegear.inplane import (
     spin_per_speed,
     values_to_coefficients,
 )
-from facegear.parameters import FloatArray, nonnegative, positive, within
+from facegear.parameters import FloatArray, nonnegative, one_of, positive, within
 from facegear.plate import Body, plate_quadrature
 
 Following = Literal["follower", "dead"]
@@ -99,8 +99,7 @@ def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower
     """
     if not isinstance(stress, EdgeLoadStress):
         raise TypeError(f"stress must be an EdgeLoadStress, got {stress!r}")
-    if following not in ("follower", "dead"):
-        raise ValueError(f"following must be 'follower' or 'dead', got {following!r}")
+    one_of("following", following, ("follower", "dead"))
     body = stress.body
     harmonics = min(stress.harmonics, complete_harmonics(body))
     grid = _grid(body, harmonics)

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from facegear.parameters import FloatArray, finite_array, integer_at_least, within
+from facegear.parameters import FloatArray, finite_array, integer_at_least, one_of, within
 from facegear.plate import Body
 
 Direction = Literal["tangential", "radial"]
@@ -224,8 +224,7 @@ class EdgeLoadStress:
             raise ValueError(
                 f"harmonics must be an integer from 0 to {HIGHEST_HARMONIC}, got {self.harmonics!r}"
             )
-        if self.direction not in ("tangential", "radial"):
-            raise ValueError(f"direction must be 'tangential' or 'radial', got {self.direction!r}")
+        one_of("direction", self.direction, ("tangential", "radial"))
         within("angle", self.angle, -2 * math.pi, 2 * math.pi, "rad", hint="degrees?")
 
     def harmonic(self, k: int) -> HarmonicField:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet import Method, growth_rate
@@ -143,7 +144,8 @@ def ascending(name: str, values: tuple[float, float], unit: str = "") -> tuple[f
     TypeError, ValueError
         Naming what is wrong.
     """
-    if len(values) != 2:
+    listed = isinstance(values, list | tuple) or (isinstance(values, np.ndarray) and values.ndim == 1)
+    if not listed or len(values) != 2:
         raise ValueError(f"{name} must be two numbers, lowest and highest, got {values!r}")
     low, high = (positive(name, value, unit) for value in values)
     if low >= high:

@@ -43,7 +43,10 @@ def finite(name: str, value: Any, unit: str = "") -> float:
     """
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         raise TypeError(f"{name} must be a real number{_in(unit)}, got {value!r}")
-    number = float(value)
+    try:
+        number = float(value)
+    except OverflowError:  # an integer of more than 308 digits
+        number = math.inf
     if not math.isfinite(number):
         raise ValueError(f"{name} must be finite{_in(unit)}, got {value!r}")
     return number
@@ -129,6 +132,19 @@ def integer_at_least(name: str, value: Any, lowest: int) -> int:
     if number < lowest:
         raise ValueError(f"{name} must be at least {lowest}, got {value!r}")
     return number
+
+
+def one_of(name: str, value: Any, choices: Collection[str]) -> None:
+    """Check that `value` is one of a few words.
+
+    Raises
+    ------
+    ValueError
+        Naming the words that are valid.
+    """
+    # Not only `in`: arrays compare element by element.
+    if not isinstance(value, str) or value not in choices:
+        raise ValueError(f"{name} must be {' or '.join(map(repr, choices))}, got {value!r}")
 
 
 def finite_array(name: str, values: ArrayLike, unit: str = "") -> FloatArray:

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.parameters import nonnegative, positive
+from facegear.parameters import nonnegative, one_of, positive
 from facegear.piecewise import (
     Array,
     FourierSeries,
@@ -68,8 +68,7 @@ class ContactLoad:
         for name in ("stiffness", "damping", "mass"):
             value = getattr(self, name)
             object.__setattr__(self, name, nonnegative(name, value))
-        if self.rate not in ("frozen", "total"):
-            raise ValueError(f'rate must be "frozen" or "total"; got {self.rate!r}')
+        one_of("rate", self.rate, ("frozen", "total"))
         if self.weight is not None and self.weight.components != 1:
             raise ValueError(f"weight must have one component; got {self.weight.components}")
         if self.weight is not None and self.mass > 0.0:

@@ -30,6 +30,7 @@ from facegear.parameters import (
     finite_array,
     integer_at_least,
     nonnegative,
+    one_of,
     positive,
     within,
 )
@@ -359,10 +360,8 @@ class Torsional:
     def __post_init__(self) -> None:
         if not isinstance(self.box, Gearbox):
             raise TypeError(f"box must be a Gearbox, got {self.box!r}")
-        if self.arm not in ("printed", "conjugate"):
-            raise ValueError(f"arm must be 'printed' or 'conjugate', got {self.arm!r}")
-        if self.path not in ("skew_line", "contact_path", "centroid"):
-            raise ValueError(f"path must be 'skew_line', 'contact_path' or 'centroid', got {self.path!r}")
+        one_of("arm", self.arm, ("printed", "conjugate"))
+        one_of("path", self.path, ("skew_line", "contact_path", "centroid"))
 
     @property
     def _mesh(self) -> _Mesh:

@@ -37,6 +37,7 @@ from facegear.parameters import (
     MeshLoad,
     finite_array,
     integer_at_least,
+    one_of,
     positive,
     within,
 )
@@ -216,16 +217,13 @@ class Transverse:
             raise TypeError(f"body must be a Body, got {self.body!r}")
         if not isinstance(self.load, MeshLoad):
             raise TypeError(f"load must be a MeshLoad, got {self.load!r}")
-        if self.rate not in ("frozen", "total"):
-            raise ValueError(f"rate must be 'frozen' or 'total', got {self.rate!r}")
-        if self.travel not in ("printed", "with_disk"):
-            raise ValueError(f"travel must be 'printed' or 'with_disk', got {self.travel!r}")
+        one_of("rate", self.rate, ("frozen", "total"))
+        one_of("travel", self.travel, ("printed", "with_disk"))
         if (self.power is None) != (self.power_speed is None):
             raise ValueError(
                 f"power and power_speed go together, got power={self.power!r}, power_speed={self.power_speed!r}"
             )
-        if self.following not in ("follower", "dead"):
-            raise ValueError(f"following must be 'follower' or 'dead', got {self.following!r}")
+        one_of("following", self.following, ("follower", "dead"))
         integer_at_least("stress_harmonics", self.stress_harmonics, 0)
         _ = self.driving_force
         # Fails here rather than at the first use if the contact ratio is not valid.
