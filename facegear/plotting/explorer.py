@@ -368,7 +368,7 @@ class MapExplorer:
         )
         right = ipywidgets.VBox(
             [self.figure, self.status, self.column, self.row, self.report, self.picture],
-            layout=ipywidgets.Layout(flex="1 1 34rem", min_width="20rem"),
+            layout=ipywidgets.Layout(flex="1 1 30rem", min_width="20rem", overflow="hidden"),
         )
         return ipywidgets.HBox([left, right], layout=ipywidgets.Layout(flex_flow="row wrap", width="100%"))
 
@@ -424,10 +424,12 @@ def _control(control: Control) -> Any:
 def _heat(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> dict[str, Any]:
     """Turn a map into what Plotly draws: unstable growth rates as colours, all of them to hover over."""
     growth = chart.values
+    # Gaps are None: in JSON, which goes to the page, there is no NaN.
+    shown = np.where(unstable(chart), growth.astype(object), None)
     return {
         "x": chart["speed"].values / speed.unit,
         "y": chart[chart.dims[0]].values / quantity.unit,
-        "z": np.where(unstable(chart), growth, np.nan),
+        "z": shown.tolist(),
         "customdata": growth,
         "zmin": 0.0,
         "zmax": max(float(growth.max()), 1e-9),
@@ -461,6 +463,7 @@ def _map_figure(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> go.
     figure = go.FigureWidget(
         data=[heatmap, mark],
         layout={
+            "autosize": True,
             "height": 430,
             "margin": {"l": 70, "r": 10, "t": 10, "b": 60},
             "plot_bgcolor": "white",
@@ -471,7 +474,7 @@ def _map_figure(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> go.
         },
     )
     # Its buttons zoom, which the axes do not, and send the chart to a server.
-    figure._config = {"displayModeBar": False}
+    figure._config = {"displayModeBar": False, "responsive": True}
     return figure
 
 
