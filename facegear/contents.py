@@ -89,7 +89,7 @@ class PrintedFigure:
 
 @dataclass(frozen=True)
 class Contents:
-    """The dissertation's sections of chapters 2 to 7, its tables and its figures, in its order."""
+    """The dissertation's sections of chapters 2 to 8, its tables and its figures, in its order."""
 
     sections: tuple[Section, ...]
     tables: tuple[Section, ...]
