@@ -8,7 +8,7 @@ export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help environment book pdf chapter drive test test-slow test-book lint format explorer bench references clean
+.PHONY: help environment book pdf chapter drive test test-slow test-lowest test-book lint format explorer bench references clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -35,6 +35,9 @@ test: environment ## run the tests (a minute or so)
 
 test-slow: environment ## run the tests that take a minute each
 	@$(PYTEST) -n 2 -m 'slow and not book'
+
+test-lowest: environment ## run the tests with the oldest versions that pyproject.toml allows
+	@$(PYTHON) tools/test_lowest.py -n 2 -m 'not slow and not book'
 
 test-book: environment ## look at the built book in Chromium (make book first)
 	@$(PYTEST) -n 2 -m book
