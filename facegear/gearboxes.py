@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 from facegear.geometry import Drive
 from facegear.parameters import STEEL, nonnegative, positive
@@ -131,12 +131,20 @@ class TorsionalFigure:
     lowest, highest : float
         Ends of the vertical axis. But for the inertias (section 7.4.1) axes are not printed: they are chosen so
         that what the text says can be seen.
+    scale : {"linear", "log"}
+        Scale of that axis.
+    lowest_rpm, traced_rpm : float
+        Lowest speed of the map, and of the tongues traced on it [rpm of the face gear]: lower down there are ever
+        more and ever narrower tongues.
     """
 
     base: ProportionalGearbox
     parameter: str
     lowest: float
     highest: float
+    scale: Literal["linear", "log"]
+    lowest_rpm: float
+    traced_rpm: float
 
     def model(self, **options: Any) -> ProportionalGearbox:
         """Return the model of the figure; `options` replace fields of it."""
@@ -173,10 +181,23 @@ def _shafts(
     )
 
 
-_FIGURE_9A = TorsionalFigure(_inertias(gear_inertia=100.0, load_inertia=10.0), "gear_inertia", 1.0, 40.0)
-_FIGURE_9B = TorsionalFigure(_inertias(gear_inertia=100.0, load_inertia=10.0), "load_inertia", 1.0, 40.0)
-_FIGURE_11A = TorsionalFigure(_shafts(0.5, 0.5, 0.1, 3e-6), "input_stiffness", 0.01, 1.0)
-_FIGURE_11B = TorsionalFigure(_shafts(0.5, 0.5, 0.1, 1e-5), "output_stiffness", 0.01, 1.0)
+_BASE_9 = _inertias(gear_inertia=100.0, load_inertia=10.0)
+_FIGURE_9A = TorsionalFigure(_BASE_9, "gear_inertia", 1.0, 40.0, "linear", 100.0, 200.0)
+_FIGURE_9B = TorsionalFigure(_BASE_9, "load_inertia", 1.0, 40.0, "linear", 100.0, 200.0)
+_FIGURE_11A = TorsionalFigure(
+    _shafts(0.5, 0.5, 0.1, 3e-6), "input_stiffness", 0.003, 1.0, "log", 100.0, 140.0
+)
+_FIGURE_11B = TorsionalFigure(
+    _shafts(0.5, 0.5, 0.1, 1e-5), "output_stiffness", 0.003, 3.0, "log", 100.0, 140.0
+)
+_FIGURE_12A = TorsionalFigure(
+    _shafts(0.5, 0.009, 0.1, 1e-5), "input_damping", 1e-6, 1e-3, "log", 100.0, 100.0
+)
+_FIGURE_12B = TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "input_damping", 3e-7, 3e-4, "log", 60.0, 60.0)
+_FIGURE_13A = TorsionalFigure(
+    _shafts(0.5, 0.1, 0.03, 1e-5), "output_damping", 1e-6, 1e-4, "log", 100.0, 100.0
+)
+_FIGURE_13B = TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "output_damping", 3e-7, 3e-4, "log", 60.0, 60.0)
 
 FIGURES: Mapping[str, TorsionalFigure] = MappingProxyType(
     {
@@ -188,10 +209,10 @@ FIGURES: Mapping[str, TorsionalFigure] = MappingProxyType(
         "7.10b": _FIGURE_11B,
         "7.11a": _FIGURE_11A,
         "7.11b": _FIGURE_11B,
-        "7.12a": TorsionalFigure(_shafts(0.5, 0.009, 0.1, 1e-5), "input_damping", 0.0, 1e-4),
-        "7.12b": TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "input_damping", 0.0, 1e-4),
-        "7.13a": TorsionalFigure(_shafts(0.5, 0.1, 0.03, 1e-5), "output_damping", 0.0, 1e-4),
-        "7.13b": TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "output_damping", 0.0, 1e-4),
+        "7.12a": _FIGURE_12A,
+        "7.12b": _FIGURE_12B,
+        "7.13a": _FIGURE_13A,
+        "7.13b": _FIGURE_13B,
     }
 )
 """Figures 7.8 to 7.13 with the parameters of their captions. Natural frequencies (7.8, 7.10) do without dampings."""

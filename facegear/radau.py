@@ -25,7 +25,7 @@ from facegear.piecewise import SAME_INSTANT, Array
 from facegear.stepping import Family
 
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB.
-_STACK_ENTRIES = 4_000_000
+_STACK_ENTRIES = 1_000_000
 # Rounds of halving after which a family is given up.
 _MOST_ROUNDS = 24
 # Legendre coefficients that tell the size of the accelerations on a panel, and how well they are resolved.
@@ -205,22 +205,19 @@ def _solved(family: Family, rule: _Rule, start: Array, length: Array) -> tuple[A
     L, D = state[..., n:, :n], state[..., n:, n:]
     h = length[np.newaxis, :, np.newaxis, np.newaxis, np.newaxis]
     # Unknown are the y2' of all nodes, (V, P, m, n) for each of 2n states at the start.
-    left = np.zeros((*L.shape[:2], m, n, m, n))
-    scaled_L, scaled_D = h**2 * a * L, h * D
-    for j in range(m):
-        left[..., j, :] = -rule.twice[:, j, np.newaxis, np.newaxis] * scaled_L
-        left[..., j, :] -= rule.once[:, j, np.newaxis, np.newaxis] * scaled_D
+    twice, once = (-matrix[:, np.newaxis, :, np.newaxis] for matrix in (rule.twice, rule.once))
+    left = (h**2 * a * L)[..., np.newaxis, :] * twice
+    left += (h * D)[..., np.newaxis, :] * once
     diagonal = np.arange(m * n)
     left = left.reshape(*L.shape[:2], m * n, m * n)
     left[..., diagonal, diagonal] += 1.0
     right = np.concatenate([L, h * a * rule.nodes[:, np.newaxis, np.newaxis] * L + D], axis=-1)
     rates = np.linalg.solve(left, right.reshape(*L.shape[:2], m * n, 2 * n))
     rates = rates.reshape(*L.shape[:2], m, n, 2 * n)
-    weights, twice = rule.once[-1], rule.twice[-1]
     steps = np.zeros((*L.shape[:2], 2 * n, 2 * n))
     h, a = h[..., 0], a[..., 0]
-    steps[..., :n, :] = h**2 * a * np.einsum("m,vpmij->vpij", twice, rates)
-    steps[..., n:, :] = h * np.einsum("m,vpmij->vpij", weights, rates)
+    steps[..., :n, :] = h**2 * a * np.einsum("m,vpmij->vpij", rule.twice[-1], rates)
+    steps[..., n:, :] = h * np.einsum("m,vpmij->vpij", rule.once[-1], rates)
     steps += np.eye(2 * n)
     steps[..., :n, n:] += (h * a) * np.eye(n)
     ends = np.concatenate([rule.to_legendre[:_LEADING], rule.to_legendre[-_LAST:]])
