@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -136,7 +137,7 @@ def highest_lobes(
     return tuple(results[highest] for highest in wanted.tolist())
 
 
-def ascending(name: str, values: tuple[float, float], unit: str = "") -> tuple[float, float]:
+def ascending(name: str, values: Any, unit: str = "") -> tuple[float, float]:
     """Check that a range is two positive, ascending numbers, and return them.
 
     Raises
