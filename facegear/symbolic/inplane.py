@@ -248,7 +248,7 @@ def _potential_field(harmonic: int) -> tuple[Numeric, ...]:
         radial = lambda_1_squared * (sp.diff(u, r) + nu * ratio)
         hoop = lambda_1_squared * (ratio + nu * sp.diff(u, r))
         shear = lambda_2_squared * (harmonic * u / r + sp.diff(v, r) - v / r)
-        functions.append(sp.lambdify((r, Omega, nu, b1, b2), [u, v, radial, shear, hoop], "mpmath"))
+        functions.append(sp.lambdify((r, Omega, nu, b1, b2), [u, v, radial, shear, hoop], "mpmath", cse=True))
     return tuple(functions)
 
 
