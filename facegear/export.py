@@ -65,6 +65,11 @@ def tooth_surface(drive: Drive, along: int = 33, across: int = 17) -> ToothSurfa
     ------
     TypeError, ValueError
         A number of points that is no integer of at least 2.
+
+    Notes
+    -----
+    R1 is where undercutting ends (3-8). Between shafts at more than 90° the corner of the shaper's tip comes back on
+    its way out and shaves some micrometres off the first few percent of the face width; that is left out here.
     """
     n, k = integer_at_least("along", along, 2), integer_at_least("across", across, 2)
     region = drive.contact_region
@@ -231,10 +236,13 @@ def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    with temporary.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        for row in zip(*columns.values(), strict=True):
-            writer.writerow(f"{v:.12g}" if isinstance(v, float | np.floating) else v for v in row)
-    temporary.replace(path)
+    try:
+        with temporary.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(columns)
+            for row in zip(*columns.values(), strict=True):
+                writer.writerow(f"{v:.12g}" if isinstance(v, float | np.floating) else v for v in row)
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
     return path
