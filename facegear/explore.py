@@ -6,7 +6,6 @@ here works without a screen; :mod:`facegear.plotting.explorer` puts controls and
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,31 +14,21 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from facegear.floquet import transition_matrix
-from facegear.labels import combination
+from facegear.cell import UNSTABLE, CellDetail, cell_detail
 from facegear.maps import stability_map
 from facegear.models import Model, replace_parameter
 from facegear.parameters import FloatArray, finite, integer_at_least, positive
-from facegear.tracing import Tongue, tongues
-from facegear.transverse import Transverse, shape_vector
 
-ComplexArray = NDArray[np.complex128]
 Settings = Mapping[str, Any]
 """Names of controls to their values."""
 
 READING_COLUMNS, READING_ROWS = 60, 40
 """Speeds and values of a map at reading resolution."""
 
-UNSTABLE = 1e-8
-"""Growth in a period, max|α| − 1, from which a cell counts as unstable [-], as for tongues."""
-
 # Speeds begin here, as a part of the highest one: below, tongues are narrower than a column.
 _LOWEST = 1 / 20
 # Cells of the first stage lie this many columns and rows apart, and slow maps are filled so many columns at a time.
 _COLUMN_STEP, _ROW_STEP, _SLOW_COLUMNS = 3, 5, 3
-# Tongues are looked for within these factors of the speed of a cell, the next where they pass the ends.
-_WINDOWS = (1.04, 1.2)
-_RADII, _ANGLES = 25, 121
 
 
 @dataclass(frozen=True)
@@ -305,128 +294,6 @@ def _only_loads_change(model: Model, speed: float, parameter: str, values: Float
 def unstable(chart: xr.DataArray) -> NDArray[np.bool_]:
     """Find the cells of a map whose growth in a period is more than rounding, shape (V, S)."""
     return np.asarray(np.expm1(chart.values * chart["period"].values) > UNSTABLE)
-
-
-@dataclass(frozen=True, eq=False)
-class CellDetail:
-    """One cell of a map.
-
-    Attributes
-    ----------
-    speed : float
-        [rad/s].
-    growth_rate : float
-        ln(max|α|)/T0 [1/s].
-    multipliers : ndarray of complex, shape (2n,)
-        Largest modulus first.
-    critical : complex
-        The largest one, of a conjugate pair that above the real axis.
-    motion : ndarray of complex, shape (n,)
-        Displacements of the critical motion at the beginning of a mesh period; real where it is largest.
-    tongue : Tongue or None
-        The interval of instability that the speed lies in, None if it is stable.
-    label : str or None
-        Its modes and order, None if stable.
-    searched : tuple of float
-        Speeds [rad/s] between which the tongue's borders were looked for.
-    deflection : xarray.DataArray or None
-        Of a disk: critical motion over ``radius`` [m] and ``angle`` [rad], complex, largest modulus 1.
-    """
-
-    speed: float
-    growth_rate: float
-    multipliers: ComplexArray
-    critical: complex
-    motion: ComplexArray
-    tongue: Tongue | None
-    label: str | None
-    searched: tuple[float, float]
-    deflection: xr.DataArray | None
-
-
-def cell_detail(model: Model, speed: float) -> CellDetail:
-    """Multipliers, critical motion and tongue of a model at one speed.
-
-    Parameters
-    ----------
-    model : Model
-    speed : float
-        [rad/s], greater than 0.
-
-    Returns
-    -------
-    CellDetail
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `speed` is not a number greater than 0.
-    """
-    speed = positive("speed", speed, "rad/s")
-    system = model.system(speed)
-    values, vectors = np.linalg.eig(transition_matrix(system))
-    # Of a conjugate pair rounding alone would decide.
-    order = np.lexsort((-values.imag, -np.abs(values).round(12)))
-    values, vectors = values[order], vectors[:, order]
-    motion = vectors[: system.size, 0]
-    radius = float(np.abs(values).max())
-    tongue, searched = None, (speed, speed)
-    if radius - 1.0 > UNSTABLE:
-        tongue, searched = _tongue_at(model, speed)
-    label = tongue.label if tongue else combination(system).label if radius - 1.0 > UNSTABLE else None
-    deflection = None
-    if isinstance(model, Transverse):
-        deflection, motion = _deflection(model, motion)
-    else:
-        motion = motion / motion[np.abs(motion).argmax()]
-    return CellDetail(
-        speed=speed,
-        growth_rate=math.log(radius) / system.period,
-        multipliers=values,
-        critical=complex(values[0]),
-        motion=motion,
-        tongue=tongue,
-        label=label,
-        searched=searched,
-        deflection=deflection,
-    )
-
-
-def _tongue_at(model: Model, speed: float) -> tuple[Tongue | None, tuple[float, float]]:
-    """Tongue around an unstable speed, looked for further away until both its borders are found."""
-    tongue, window = None, (speed, speed)
-    for factor in _WINDOWS:
-        window = (speed / factor, speed * factor)
-        try:
-            found = tongues(model, *window, threshold=UNSTABLE, hints=(speed,))
-        except ArithmeticError:
-            # Multipliers too large to be known to the threshold: no borders, but the cell still has its label.
-            return None, window
-        tongue = next((t for t in found if t.lower <= speed <= t.upper), None)
-        if tongue is None or (window[0] < tongue.lower and tongue.upper < window[1]):
-            break
-    return tongue, window
-
-
-def _deflection(model: Transverse, motion: ComplexArray) -> tuple[xr.DataArray, ComplexArray]:
-    """Deflection of the disk in a motion, and the motion to its scale and phase."""
-    body = model.body
-    radius = np.linspace(body.bore_radius, body.outer_radius, _RADII)
-    angle = np.linspace(0.0, 2.0 * np.pi, _ANGLES)
-    shape = shape_vector(body, radius[:, np.newaxis], angle)
-    values = shape @ motion
-    largest = values.flat[np.abs(values).argmax()]
-    data = xr.DataArray(
-        values / largest,
-        dims=("radius", "angle"),
-        coords={
-            "radius": ("radius", radius, {"units": "m"}),
-            "angle": ("angle", angle, {"units": "rad"}),
-        },
-        name="deflection",
-        attrs={"units": "1", "long_name": "deflection over its largest amplitude"},
-    )
-    return data, motion / largest
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear import cases, studies
+from facegear.cell import cell_detail
 from facegear.classical import meissner_trace
 from facegear.explore import (
     Choice,
     Quantity,
     Study,
-    cell_detail,
     map_stages,
     shown_only,
     unstable,
@@ -85,6 +85,26 @@ def test_stable_cell_has_neither_tongue_nor_label():
     assert detail.tongue is None
     assert detail.label is None
     assert np.abs(detail.multipliers) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_motion_over_time_is_that_of_the_equation_and_returns_times_the_multiplier():
+    model = replace(SQUARE, depth=0.2, damping_ratio=0.01)
+    detail = cell_detail(model, 1.95)
+    motion = detail.history[:, 0]
+    # Within a part of the square wave the equation is q̈ + 2ζ q̇ + (1 ± ε) q = 0.
+    time = motion["time"].values
+    first = motion.values[(time > 0.0) & (time < 0.4)]
+    step = 2.0 * np.pi / 1.95 * (time[1] - time[0])
+    acceleration = (first[2:] - 2.0 * first[1:-1] + first[:-2]) / step**2
+    velocity = (first[2:] - first[:-2]) / (2.0 * step)
+    residual = acceleration + 0.02 * velocity + 1.2 * first[1:-1]
+    assert np.abs(residual).max() < 2e-3 * np.abs(first).max()
+    one_period = motion.size // 6
+    ahead = motion.values[one_period : 2 * one_period]
+    assert ahead == pytest.approx(detail.critical.real * motion.values[:one_period], abs=1e-6)
+    # What the integration over a period ends with is what the next one begins with.
+    ends = motion.values[[one_period - 1, one_period]]
+    assert ends[0] == pytest.approx(ends[1], abs=1e-6)
 
 
 def test_critical_motion_of_a_free_disk_is_a_travelling_wave():

@@ -10,8 +10,9 @@ import pytest
 from plotly.callbacks import InputDeviceState, Points
 
 from facegear import cases, explore, studies
+from facegear.cell import cell_detail
 from facegear.parameters import rad_per_s
-from facegear.plotting import explorer
+from facegear.plotting import cell, explorer
 
 STUDY = replace(studies.oscillator_study(), columns=12, rows=8)
 NO_KEYS = InputDeviceState()
@@ -162,22 +163,30 @@ def test_picture_of_an_oscillator():
     figure.canvas.draw()
     assert "depth of modulation ε" in words(figure)
     assert "growth rate [1/s]" in words(figure)
-    assert "imaginary part" in words(figure)
+    assert "time [periods]" in words(figure)
     assert dict(mpl.rcParams) == before
 
 
 def test_cell_of_a_disk_has_its_deflection_drawn():
-    detail = explore.cell_detail(cases.FIGURES["4.4a"].model(), float(rad_per_s(300.0)))
-    figure = explorer.cell_figure(detail)
+    detail = cell_detail(cases.FIGURES["4.4a"].model(), float(rad_per_s(300.0)))
+    figure = cell.cell_figure(detail)
     figure.canvas.draw()
     assert f"{abs(detail.critical):.5f}" in words(figure)
     assert "critical motion, real part" in words(figure)
 
 
+def test_cell_of_a_gearbox_names_its_coordinates():
+    study = studies.gearbox_study()
+    detail = cell_detail(study.model(study.settings()), float(rad_per_s(640.0)))
+    figure = cell.cell_figure(detail, study.coordinates)
+    figure.canvas.draw()
+    assert "pinion face gear load" in words(figure)
+
+
 def test_borders_beyond_what_was_searched_are_not_given_as_borders():
-    detail = explore.cell_detail(studies.Oscillator(0.9, 0.0), 1.9)
+    detail = cell_detail(studies.Oscillator(0.9, 0.0), 1.9)
     low, high = detail.searched
     clipped = replace(detail, tongue=replace(detail.tongue, lower=low, upper=high))
     depth = STUDY.swept("depth")
-    sentence = explorer.described(clipped, 0.9, depth, STUDY.speed)
+    sentence = cell.described(clipped, 0.9, depth, STUDY.speed)
     assert f"from below {low:.5g} to above {high:.5g}" in sentence

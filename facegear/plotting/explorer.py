@@ -15,45 +15,25 @@ import ipywidgets
 import numpy as np
 import plotly.graph_objects as go
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.colors import Normalize, to_hex
 from matplotlib.figure import Figure
 
+from facegear.cell import cell_detail
 from facegear.explore import (
-    CellDetail,
     Choice,
     Control,
     Quantity,
     Study,
     View,
-    cell_detail,
     map_stages,
     unstable,
 )
 from facegear.models import Model, replace_parameter
-from facegear.plotting.style import BLUE, GREY, GROWTH, INK, VERMILION, WIDTH, styled
+from facegear.plotting.cell import RING, cell_figure, described, draw_detail
+from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, WIDTH, styled
 
 _REFUSALS = (TypeError, ValueError, ArithmeticError)
 _COLOURS = [[k / 10, to_hex(GROWTH(k / 10))] for k in range(11)]
-
-
-def described(detail: CellDetail, value: float, vertical: Quantity, speed: Quantity) -> str:
-    """Say in a sentence or two what happens in a cell."""
-    horizontal = speed.label[0].upper() + speed.label[1:]
-    at = f"{horizontal} {detail.speed / speed.unit:.4g}, {vertical.label} {value / vertical.unit:.4g}"
-    rate = f"{detail.growth_rate:.3g} 1/s"
-    if detail.label is None:
-        return f"{at}: stable, largest growth rate {rate}."
-    text = f"{at}: unstable, the motion grows at {rate} by the resonance {detail.label}."
-    if detail.tongue is not None:
-        tongue, (low, high) = detail.tongue, (limit / speed.unit for limit in detail.searched)
-        ends = (tongue.lower / speed.unit, tongue.upper / speed.unit)
-        beyond = ["below " * (ends[0] <= low), "above " * (ends[1] >= high)]
-        text += (
-            f" Its tongue reaches from {beyond[0]}{ends[0]:.5g} to {beyond[1]}{ends[1]:.5g} and is strongest at "
-            f"{tongue.peak / speed.unit:.5g} with {tongue.growth_rate:.3g} 1/s."
-        )
-    return text
 
 
 @styled
@@ -80,105 +60,12 @@ def picture(view: View) -> Figure:
         shading="nearest",
         rasterized=True,
     )
-    ax.plot(view.detail.speed / speed.unit, view.value / vertical.unit, "o", **_RING)
+    ax.plot(view.detail.speed / speed.unit, view.value / vertical.unit, "o", **RING)
     ax.set(xlabel=speed.label, ylabel=vertical.label)
     ax.grid(False)
     figure.colorbar(mesh, ax=ax, label="growth rate [1/s]")
-    _draw_detail(below, view.detail, view.study.coordinates)
+    draw_detail(below, view.detail, view.study.coordinates)
     return figure
-
-
-_RING: dict[str, Any] = {
-    "markersize": 11,
-    "markerfacecolor": "none",
-    "markeredgecolor": VERMILION,
-    "markeredgewidth": 2,
-}
-
-
-@styled
-def cell_figure(detail: CellDetail, coordinates: tuple[str, ...] = ()) -> Figure:
-    """Multipliers in the complex plane and the critical motion.
-
-    Parameters
-    ----------
-    detail : CellDetail
-        From :func:`facegear.explore.cell_detail`.
-    coordinates : tuple of str, optional
-        Names of the coordinates, for what is no disk.
-    """
-    figure = Figure(figsize=(WIDTH, 2.9), layout="constrained")
-    _draw_detail(figure, detail, coordinates)
-    return figure
-
-
-def _draw_detail(figure: Any, detail: CellDetail, coordinates: tuple[str, ...]) -> None:
-    disk = detail.deflection is not None
-    axes = figure.subplots(1, 3 if disk else 2)
-    _draw_multipliers(axes[0], detail)
-    if detail.deflection is None:
-        _draw_amplitudes(axes[1], detail.motion, coordinates)
-        return
-    for ax, part, title in zip(
-        axes[1:],
-        (detail.deflection.real, detail.deflection.imag),
-        ("critical motion, real part", "imaginary part"),
-        strict=True,
-    ):
-        _draw_disk(ax, part)
-        ax.set_title(title, fontsize=10)
-
-
-def _draw_multipliers(ax: Axes, detail: CellDetail) -> None:
-    circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 200))
-    ax.plot(circle.real, circle.imag, color=GREY, linewidth=0.9)
-    values = detail.multipliers
-    ax.plot(values.real, values.imag, ".", color=BLUE, markersize=6)
-    largest = np.array([detail.critical, detail.critical.conjugate()])
-    ax.plot(largest.real, largest.imag, "o", **_RING)
-    reach = 1.12 * max(1.0, float(np.abs(values).max()))
-    ax.set(
-        xlabel=r"Re $\alpha$",
-        ylabel=r"Im $\alpha$",
-        aspect="equal",
-        xlim=(-reach, reach),
-        ylim=(-reach, reach),
-    )
-    ax.set_title(rf"multipliers, max $|\alpha|$ = {abs(detail.critical):.5f}", fontsize=10)
-
-
-def _draw_disk(ax: Axes, deflection: xr.DataArray) -> None:
-    """Deflection of the disk, seen along its axis, and its nodal lines."""
-    radius, angle = np.meshgrid(deflection["radius"], deflection["angle"], indexing="ij")
-    x, y = radius * np.cos(angle), radius * np.sin(angle)
-    w = deflection.values
-    ax.pcolormesh(x, y, w, cmap="PuOr", vmin=-1.0, vmax=1.0, shading="gouraud", rasterized=True)
-    if w[1:].min() < 0.0 < w[1:].max():
-        ax.contour(x[1:], y[1:], w[1:], levels=[0.0], colors=INK, linewidths=1.2)
-    for edge in (0, -1):
-        ax.plot(x[edge], y[edge], color=GREY, linewidth=0.8)
-    ax.set_aspect("equal")
-    ax.axis("off")
-
-
-def _draw_amplitudes(ax: Axes, motion: np.ndarray, coordinates: tuple[str, ...]) -> None:
-    """Displacements of a few coordinates."""
-    places = np.arange(motion.size)
-    ax.bar(places - 0.2, motion.real, 0.4, color=BLUE, label="real part")
-    ax.bar(
-        places + 0.2,
-        motion.imag,
-        0.4,
-        color="white",
-        edgecolor=VERMILION,
-        hatch="//",
-        label="imaginary part",
-    )
-    ax.axhline(0.0, color=INK, linewidth=0.8)
-    ax.set_xticks(places, coordinates or [f"$q_{k + 1}$" for k in places])
-    ax.set(ylim=(-1.15, 1.15), ylabel="displacement")
-    ax.set_title("critical motion", fontsize=10)
-    ax.legend(loc="lower right", fontsize=9)
 
 
 class MapExplorer:
@@ -425,7 +312,8 @@ def _heat(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> dict[str,
     """Turn a map into what Plotly draws: unstable growth rates as colours, all of them to hover over."""
     growth = chart.values
     # Gaps are None: in JSON, which goes to the page, there is no NaN.
-    shown = np.where(unstable(chart), growth.astype(object), None)
+    shown = growth.astype(object)
+    shown[~unstable(chart)] = None
     return {
         "x": chart["speed"].values / speed.unit,
         "y": chart[chart.dims[0]].values / quantity.unit,
