@@ -1,16 +1,21 @@
 """What stops a build, and what it then says; what is done again, and what is not."""
 
+import contextlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from html import unescape
 from pathlib import Path
+from urllib.parse import SplitResult, parse_qs, urlsplit
 
 import nbformat
+import numpy as np
 import psutil
 import pytest
 
@@ -216,9 +221,20 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def build(project: Path, *tasks: str) -> subprocess.CompletedProcess[str]:
+def build(
+    project: Path, *tasks: str, environment: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, str(project / "tools" / "build.py"), *tasks]
-    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=project)
+    # On GitHub the tests must not see the address of the repository they run in.
+    known = {name: value for name, value in os.environ.items() if name != "GITHUB_REPOSITORY"}
+    return subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=project,
+        env=known | dict(environment or {}),
+    )
 
 
 def executed(project: Path) -> dict[str, float]:
@@ -278,6 +294,33 @@ def test_a_drive_file_is_read_by_the_report_on_a_drive_alone(project: Path) -> N
     assert ledger >= {"ch04_map.nc", "drive_tongues.nc", "plain.yaml"}
     assert "case_4.yaml" not in ledger
     assert report == {"case_4.yaml", "drive_tongues.nc"}
+
+
+@pytest.mark.slow
+def test_buttons_lead_to_files_of_the_repository_where_its_address_is_known(project: Path) -> None:
+    """On GitHub the pages have buttons; in anybody's clone they have none."""
+
+    def links(page: str) -> list[SplitResult]:
+        text = (project / "build" / "_build" / "html" / page).read_text(encoding="utf-8")
+        return [urlsplit(unescape(link)) for link in re.findall(r'href="([^"]+)"', text)]
+
+    def elsewhere(page: str) -> list[SplitResult]:
+        return [link for link in links(page) if link.netloc in ("mybinder.org", "github.com")]
+
+    assert build(project).returncode == 0
+    assert not elsewhere("notebooks/03_one.html")
+    shutil.rmtree(project / "build" / "_build")
+    assert build(project, environment={"GITHUB_REPOSITORY": "someone/facegear"}).returncode == 0
+    buttons = elsewhere("notebooks/03_one.html")
+    (binder,) = [link for link in buttons if link.netloc == "mybinder.org"]
+    assert binder.path == "/v2/gh/someone/facegear/main"
+    assert parse_qs(binder.query) == {"urlpath": ["lab/tree/notebooks/03_one.ipynb"]}
+    assert (project / "notebooks" / "03_one.ipynb").is_file()
+    on_github = [link.path for link in buttons + elsewhere("intro.html") if link.netloc == "github.com"]
+    assert "/someone/facegear" in on_github
+    for path in on_github:
+        if "/blob/" in path or "/edit/" in path:
+            assert (project / re.split("/(?:blob|edit)/main/", path)[1]).is_file(), path
 
 
 @pytest.mark.slow
@@ -347,6 +390,88 @@ def test_build_that_is_ended_goes_on_where_it_was(project: Path, how: signal.Sig
     assert done.returncode == 0, done.stderr
     assert executed(project)["03_one"] == times["03_one"]
     assert "04_two" in executed(project)
+
+
+ARRAYS = """
+import time
+import numpy as np
+import xarray as xr
+from pathlib import Path
+from facegear.reference import save, variable
+time.sleep(0.4)
+values = np.cumsum(np.random.default_rng({seed}).random(1000))
+save(xr.Dataset({{"y": variable("x", values, "height", "m", atol=1e-9)}}), "../build/arrays/{name}.nc")
+with Path("../runs.txt").open("a") as record:
+    record.write("{name}\\n")
+"""
+
+
+@pytest.fixture
+def arrays(project: Path) -> Callable[[], dict[str, bytes]]:
+    """Give both notebooks three arrays to compute, and return what reads them."""
+    for number, name in enumerate(("03_one", "04_two")):
+        cells = [ARRAYS.format(seed=10 * number + k, name=f"ch{name[:2]}_{k}") for k in range(3)]
+        write_notebook(project / "notebooks" / f"{name}.ipynb", *cells)
+
+    def read() -> dict[str, bytes]:
+        return {path.name: path.read_bytes() for path in sorted((project / "build" / "arrays").iterdir())}
+
+    return read
+
+
+def start(project: Path) -> subprocess.Popen[str]:
+    with (project / "log").open("a") as log:
+        command = [sys.executable, str(project / "tools" / "build.py"), "notebook"]
+        return subprocess.Popen(command, cwd=project, stdout=log, stderr=log)
+
+
+@pytest.mark.slow
+def test_build_killed_at_any_moment_comes_to_the_same_arrays(
+    project: Path, arrays: Callable[[], dict[str, bytes]]
+) -> None:
+    began = time.monotonic()
+    assert build(project, "notebook").returncode == 0
+    whole = time.monotonic() - began
+    expected = arrays()
+    assert len(expected) == 6
+
+    shutil.rmtree(project / "build")
+    killed = 0
+    for moment in np.random.default_rng(7).uniform(0.1, 0.9, 4):
+        process = start(project)
+        below = []
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(timeout=moment * whole)
+        if process.poll() is None:
+            below = psutil.Process(process.pid).children(recursive=True)
+            process.kill()
+            process.wait()
+            killed += 1
+        _gone, alive = psutil.wait_procs(below, timeout=30)
+        assert not alive
+        for name, content in arrays().items() if (project / "build" / "arrays").exists() else ():
+            # A file that was being written has a name of its own.
+            assert expected.get(name, content) == content
+    assert killed >= 2
+
+    assert build(project, "notebook").returncode == 0
+    found = arrays()
+    assert {name: found[name] for name in expected} == expected
+    assert sorted(executed(project)) == ["03_one", "04_two"]
+
+
+@pytest.mark.slow
+def test_two_builds_at_once_do_not_disturb_each_other(
+    project: Path, arrays: Callable[[], dict[str, bytes]]
+) -> None:
+    both = [start(project), start(project)]
+    assert [process.wait(timeout=300) for process in both] == [0, 0]
+    assert "waiting for it to end" in told(project)
+    # The one that came second found everything done.
+    runs = (project / "runs.txt").read_text(encoding="utf-8").split()
+    assert sorted(runs) == sorted(Path(name).stem for name in arrays())
+    assert len(runs) == 6
+    assert sorted(executed(project)) == ["03_one", "04_two"]
 
 
 def told(project: Path) -> str:
