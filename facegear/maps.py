@@ -22,7 +22,7 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from facegear.collocation import is_suitable
+from facegear.collocation import UnsuitableSystemError
 from facegear.columns import GENERAL_ROUTE, TOLERANCE, column_spectral_radii, interpolate
 from facegear.floquet import (
     Collocation,
@@ -31,7 +31,7 @@ from facegear.floquet import (
     multipliers,
     transition_matrices,
 )
-from facegear.models import Model, is_whole_number, parameter_path, replace_parameter
+from facegear.models import Model, is_whole_number, parameter_path, replace_at
 from facegear.parallel import Workers, computed, parts_of
 from facegear.parameters import finite_array, rpm
 from facegear.periodic import PeriodicSystem
@@ -178,7 +178,12 @@ class _Sweep:
 
     def model_at(self, value: float) -> Any:
         """Return the model with the parameter replaced."""
-        return replace_parameter(self.model, self.parameter, value)
+        return replace_at(self.model, self.path, value)
+
+    @cached_property
+    def path(self) -> tuple[str, ...]:
+        """Fields that lead to the parameter."""
+        return parameter_path(self.model, self.parameter)
 
     @cached_property
     def models(self) -> tuple[Model, ...]:
@@ -319,11 +324,19 @@ def _model_column(sweep: _Sweep, speed: float) -> Array:
     alone = values.size <= len(sweep.probes) or is_whole_number(sweep.model, sweep.parameter)
     if alone or any(not _same_layout(systems[0], other) for other in systems[1:]):
         return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
-    method = sweep.method
-    if method is None:
-        method = Collocation() if all(is_suitable(system) for system in systems) else GENERAL_ROUTE
     # Coordinates in which entries are of comparable size, the same for the whole column.
     scale = Family(systems[:1]).scale
+    if sweep.method is not None:
+        return _interpolated_column(sweep, speed, sweep.method, scale)
+    try:
+        return _interpolated_column(sweep, speed, Collocation(), scale)
+    except UnsuitableSystemError:
+        return _interpolated_column(sweep, speed, GENERAL_ROUTE, scale)
+
+
+def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: Array) -> Array:
+    """Spectral radii along one column from transition matrices at some of its values, shape (V,)."""
+    values = np.array(sweep.values)
 
     def evaluate(chosen: Array) -> Array:
         matrices = transition_matrices([sweep.model_at(v).system(speed) for v in chosen.tolist()], method)

@@ -104,7 +104,7 @@ def replace_parameter(model: ModelT, name: str, value: float) -> ModelT:
     TypeError, ValueError
         From :func:`parameter_path`, or from the model's own check of the value.
     """
-    replaced: ModelT = _replace(model, parameter_path(model, name), value)
+    replaced: ModelT = replace_at(model, parameter_path(model, name), value)
     return replaced
 
 
@@ -117,10 +117,20 @@ def is_whole_number(model: object, name: str) -> bool:
     return bool(_declared(part).get(last) is int)
 
 
-def _replace(part: Any, path: tuple[str, ...], value: float) -> Any:
+def replace_at(part: Any, path: tuple[str, ...], value: float) -> Any:
+    """Return a dataclass with the parameter at the end of a path of fields replaced.
+
+    Parameters
+    ----------
+    part : dataclass
+    path : tuple of str
+        From :func:`parameter_path`.
+    value : float
+        As for :func:`replace_parameter`.
+    """
     name, rest = path[0], path[1:]
     if rest:
-        return dataclasses.replace(part, **{name: _replace(getattr(part, name), rest, value)})
+        return dataclasses.replace(part, **{name: replace_at(getattr(part, name), rest, value)})
     if _declared(part).get(name) is int and float(value).is_integer():
         return dataclasses.replace(part, **{name: int(value)})
     return dataclasses.replace(part, **{name: value})

@@ -237,6 +237,8 @@ class PiecewiseChebyshev:
 
     def shift(self, phase: float) -> PiecewiseChebyshev:
         """Return x ↦ f(x + phase), Eq. (5-2): ahead by `phase` of a period."""
+        if phase == 0.0:
+            return self
         moved = wrap(self.breakpoints - float(phase))
         order = np.argsort(moved)
         return PiecewiseChebyshev(moved[order], self.coefficients[order])

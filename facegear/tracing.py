@@ -25,6 +25,9 @@ from facegear.scanning import SPEED_TOLERANCE, Scan, scan_of
 
 _KINDS: tuple[Kind, ...] = get_args(Kind)
 
+# Samples of speed closer than this, relative, are one where a maximum is looked for.
+_APART = 1e-5
+
 
 @dataclass(frozen=True)
 class Tongue:
@@ -253,8 +256,12 @@ def _runs(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[tuple[fl
         upper = border(stop - 1, stop) if stop <= last else curve.highest_speed
         growth = np.log(scan.radii[start:stop]) * scan.speeds[start:stop]
         top = start + int(np.argmax(growth))
-        low = max(lower, float(scan.speeds[max(top - 1, 0)]))
-        high = min(upper, float(scan.speeds[min(top + 1, last)]))
+        # Samples that all but coincide, apart by rounding, do not bracket a maximum.
+        apart = _APART * scan.speeds[top]
+        before = int(np.searchsorted(scan.speeds, scan.speeds[top] - apart)) - 1
+        after = int(np.searchsorted(scan.speeds, scan.speeds[top] + apart, side="right"))
+        low = max(lower, float(scan.speeds[max(before, 0)]))
+        high = min(upper, float(scan.speeds[min(after, last)]))
         runs.append((lower, upper, _peak(curve, low, high, float(scan.speeds[top]))))
     return runs
 

@@ -142,6 +142,8 @@ def rotated(body: Body, shape: PiecewiseChebyshev, angle: float) -> PiecewiseChe
     PiecewiseChebyshev
         φ(r_c, θ_c + α).
     """
+    if angle == 0.0:
+        return shape
     blocks = [np.eye(1)]
     for n in range(1, body.nodal_diameters + 1):
         cosine, sine = math.cos(n * angle), math.sin(n * angle)

@@ -8,7 +8,7 @@ from scipy.linalg import eigh_tridiagonal
 from scipy.optimize import brentq
 
 import facegear.maps
-from facegear import parallel
+from facegear import parallel, tracing
 from facegear.floquet import growth_rate
 from facegear.geometry import Drive
 from facegear.hsu import resonance_bands
@@ -17,6 +17,7 @@ from facegear.parameters import MeshLoad, rad_per_s, rpm
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
+from facegear.scanning import Scan
 from facegear.tracing import borders, tongues
 from facegear.transverse import Transverse
 
@@ -363,3 +364,21 @@ def test_other_arguments_are_checked():
 def test_maps_offers_tongues_as_well():
     assert facegear.maps.tongues is tongues
     assert facegear.borders is borders
+
+
+def test_samples_that_nearly_coincide_do_not_hide_the_peak():
+    """Growth 0.1 (0.25 − (v − 2)²), sampled twice at 1.9 with the second value lower by rounding."""
+
+    class Curve:
+        lowest_speed, highest_speed = 1.0, 3.0
+
+        @staticmethod
+        def spectral_radii(speeds):
+            return np.exp(0.1 * (0.25 - (speeds - 2.0) ** 2) / speeds)
+
+    speeds = np.array([1.0, 1.6, 1.9, 1.9 * (1 + 1e-12), 2.3, 3.0])
+    radii = Curve.spectral_radii(speeds)
+    radii[3] = radii[2] * (1 - 1e-15)
+    ((lower, upper, peak),) = tracing._runs(Curve, Scan(speeds, radii), 1e-12)
+    assert (lower, upper) == pytest.approx((1.5, 2.5), rel=1e-8)
+    assert peak == pytest.approx(2.0, rel=1e-6)
