@@ -1,0 +1,163 @@
+"""Arrays and tables of the report on a drive."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from facegear import report
+from facegear.changes import effects_of_changes
+from facegear.disk_arrays import plate_modes
+from facegear.drive_file import read_drive_file
+from facegear.parameters import rad_per_s, rpm
+from facegear.tooth_design import root_stress
+from facegear.tracing import tongues
+
+DRIVES = Path(__file__).resolve().parents[1] / "data" / "drives"
+CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
+BOX = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
+RANGE = (float(rad_per_s(500.0)), float(rad_per_s(720.0)))
+FOUND = tongues(CASE_1.transverse, *RANGE)
+
+
+def values(rows):
+    return {row.quantity: row.value for row in rows}
+
+
+def test_geometry_has_the_printed_numbers():
+    found = values(report.geometry(CASE_1))
+    assert found["outer radius of the teeth R2"] == pytest.approx(231.94, abs=5e-3)
+    assert found["contact ratio after Tregold"] == pytest.approx(1.5532, abs=5e-5)
+    assert found["gear ratio N2/N1"] == 5.0
+    assert found["thickness of the body"] == pytest.approx(0.03 * found["outer radius of the teeth R2"])
+    assert found["bearing stiffness"] == found["stiffness of the disk that bearings are measured by"]
+
+
+def test_strength_follows_duty_and_material():
+    found = values(report.strength(CASE_1))
+    assert found["allowable stress"] == pytest.approx(439.9 / 1.5)
+    stress = root_stress(CASE_1.drive, 447420.0, rad_per_s(5000.0))
+    assert found["largest stress at the root"] == pytest.approx(1e-6 * stress)
+    assert found["allowable over largest stress"] == pytest.approx(439.9e6 / 1.5 / stress)
+
+
+def test_flutter_needs_damping_to_be_kept_off():
+    found = values(report.flutter(CASE_1))
+    critical = [value for name, value in found.items() if name.startswith("critical power of the disk")]
+    assert found["power of a pinion"] == pytest.approx(447.42)
+    assert found["critical power over power of a pinion"] == pytest.approx(min(critical) / 447.42)
+    # P_c ≈ ξω³/ε: in proportion to the loss factor.
+    body = CASE_1.transverse.body
+    for factor, expected in ((2.0, 2.0), (0.0, 0.0)):
+        loss = factor * body.material.viscous_loss_factor
+        other = replace(body, material=replace(body.material, viscous_loss_factor=loss))
+        changed = replace(CASE_1, transverse=replace(CASE_1.transverse, body=other))
+        ratio = values(report.flutter(changed))["critical power over power of a pinion"]
+        assert ratio == pytest.approx(
+            expected * found["critical power over power of a pinion"], rel=0.02, abs=1e-12
+        )
+
+
+def test_tongues_and_windows_share_out_the_range():
+    table = report.tongue_table(FOUND, "case 1")
+    windows = report.safe_windows(table, RANGE)
+    assert table.attrs["labels"].split() == [tongue.label for tongue in FOUND]
+    ends = np.sort(np.concatenate([part[side] for part in (table, windows) for side in ("lower", "upper")]))
+    assert ends[[0, -1]] == pytest.approx([500.0, 720.0])
+    np.testing.assert_allclose(ends[1:-1:2], ends[2:-1:2])
+    widths = sum(float((part["upper"] - part["lower"]).sum()) for part in (table, windows))
+    assert widths == pytest.approx(220.0)
+    assert (windows["upper"] > windows["lower"]).all()
+
+
+def test_windows_of_a_stable_and_of_an_unstable_range():
+    empty = report.tongue_table((), "none")
+    (window,) = report.safe_windows(empty, RANGE)["lower"].values
+    assert window == pytest.approx(500.0)
+    inside = (FOUND[0].lower + 1e-3, FOUND[0].upper - 1e-3)
+    assert report.safe_windows(
+        report.tongue_table(tongues(CASE_1.transverse, *inside), ""), inside
+    ).sizes == {"window": 0}
+
+
+def test_combinations_cross_the_mesh_frequency_in_their_tongues():
+    speeds = np.linspace(500.0, 720.0, 23)
+    chart = report.campbell(CASE_1.transverse, FOUND, speeds, "case 1")
+    np.testing.assert_allclose(chart["mesh_frequency"], 130 * speeds / 60, rtol=1e-12)
+    assert (np.diff(chart["natural_frequency"], axis=0) >= 0).all()
+    for label, line in zip(chart.attrs["labels"].split(), chart["combination"], strict=True):
+        (tongue,) = [tongue for tongue in FOUND if tongue.label == label]
+        crossing = np.interp(0.0, chart["mesh_frequency"] - line, speeds)
+        # The centre of the mean system lies in the tongue or, where the modulation is strong, near it.
+        assert rpm(tongue.lower) - 15 < crossing < rpm(tongue.upper) + 15
+
+
+def test_campbell_of_the_gearbox_has_its_natural_frequencies():
+    chart = report.campbell(BOX.torsional, (), [10.0], "box")
+    # All dampings are 10 µs times a stiffness: ω √(1 − (10 µs ω/2)²).
+    free = BOX.torsional.natural_frequencies()
+    damped = free * np.sqrt(1 - (1e-5 * free / 2) ** 2) / (2 * np.pi)
+    np.testing.assert_allclose(chart["natural_frequency"][:, 0], damped, rtol=1e-4)
+    assert chart.sizes["label"] == 0
+
+
+def test_map_and_tongues_agree():
+    table = report.tongue_table(FOUND, "")
+    speeds = np.linspace(505.0, 715.0, 43)
+    chart = report.growth_map(CASE_1.transverse, "stiffness", [0.5, 1.0], speeds, "case 1")
+    inside = ((speeds[:, None] > table["lower"].values) & (speeds[:, None] < table["upper"].values)).any(
+        axis=1
+    )
+    assert inside.any()
+    np.testing.assert_array_equal(chart["growth_rate"].sel(stiffness=1.0) > 0, inside)
+    assert chart.attrs["parameters"] == "case 1, swept = stiffness"
+
+
+@pytest.mark.slow
+def test_critical_thickness_parts_stable_from_unstable():
+    file = replace(CASE_1, requirements=replace(CASE_1.requirements, speed_range=RANGE))
+    critical = report.critical_thickness(file).critical.thickness_ratio
+    for factor, stable in ((1.002, True), (0.998, False)):
+        body = replace(CASE_1.transverse.body, thickness_ratio=factor * critical)
+        assert bool(tongues(replace(CASE_1.transverse, body=body), *RANGE)) != stable
+
+
+def test_no_critical_thickness_is_told_with_the_reason():
+    narrow = (float(rad_per_s(600.0)), float(rad_per_s(601.0)))
+    file = replace(CASE_1, requirements=replace(CASE_1.requirements, speed_range=narrow))
+    # 0.001 of the thickness up or down: stable there.
+    verdict = report.critical_thickness(file, widest=1.001)
+    assert verdict.critical is None
+    assert "stable" in verdict.reason
+    inside = replace(
+        file, requirements=replace(file.requirements, speed_range=(FOUND[0].lower, FOUND[0].upper))
+    )
+    verdict = report.critical_thickness(inside, widest=1.001)
+    assert verdict.critical is None
+    assert "must end above all lobes" in verdict.reason
+
+
+def test_columns_of_tables():
+    table = report.tongue_table(FOUND, "")
+    empty = report.tongue_table((), "")
+    columns = report.tongue_columns({"a": table, "none": empty, "b": table})
+    assert columns["model"] == ["a"] * len(FOUND) + ["b"] * len(FOUND)
+    assert columns["lower_rpm"] == 2 * table["lower"].values.tolist()
+    windows = report.safe_windows(empty, RANGE)
+    assert report.window_columns({"a": windows})["upper_rpm"] == pytest.approx([720.0])
+    modes = plate_modes(CASE_1.transverse.body, 3)
+    columns = report.frequency_columns(modes)
+    assert len(columns["frequency_Hz"]) == 8
+    assert columns["nodal_diameters"][:5] == [0, 1, 2, 3, 0]
+    assert columns["nodal_circles"][3:5] == [0, 1]
+    none = effects_of_changes(CASE_1.transverse, (), RANGE, "")
+    assert report.change_columns({"a": none})["change"] == []
+    rows = report.summary_columns(report.strength(CASE_1))
+    assert rows["unit"] == ["mm", "MPa", "MPa", "1"]
+
+
+def test_provenance_tells_drives_apart():
+    assert report.describe(CASE_1) != report.describe(BOX)
+    assert isinstance(report.tongue_table(FOUND, "x"), xr.Dataset)
