@@ -1,11 +1,16 @@
+from dataclasses import replace
+
+import matplotlib as mpl
 import numpy as np
 import pytest
 
 from facegear import design_arrays
 from facegear.design import BodyDesign
+from facegear.floquet import growth_rate
 from facegear.lobes import CriticalThickness, Lobe
 from facegear.parameters import MeshLoad, rad_per_s
 from facegear.plate import Body
+from facegear.plotting import design as draw
 from facegear.tooth_design import constant_diametral_pitch, constant_pitch_radius, root_stress
 from facegear.transverse import Transverse, coordinates, shape_vector
 
@@ -98,3 +103,32 @@ def test_critical_of_variants_and_tips():
     tipped = design_arrays.with_tips(data, [Lobe(0.03, 10.0, "(1+2)/1")])
     assert tipped.attrs["tip_labels"] == "(1+2)/1"
     assert float(tipped["tip_speed"][0]) == pytest.approx(95.49297)
+
+
+def test_thickness_figure_has_cells_tongues_and_tips_of_the_model():
+    lobe = Lobe(0.03945, float(rad_per_s(834.0)), "(1+9)/1")
+    data = design_arrays.thickness_figure(
+        MODEL,
+        [lobe],
+        thickness_range=(0.03, 0.036),
+        speeds_rpm=(600.0, 1000.0),
+        cells=4,
+        sections=2,
+        traced_rpm=600.0,
+        jobs=1,
+    )
+    assert data["speed_rpm"].values.tolist() == [700.0, 800.0, 900.0, 1000.0]
+    assert data["thickness_ratio"].values == pytest.approx([0.0315, 0.033, 0.0345, 0.036])
+    assert data["section"].values.tolist() == [0.03, 0.036]
+    cell = replace(MODEL, body=Body(DRIVE, 0.033)).system(float(rad_per_s(800.0)))
+    found = float(data["growth_rate"].sel(speed_rpm=800.0).sel(thickness_ratio=0.033, method="nearest"))
+    assert found == pytest.approx(growth_rate(cell), abs=1e-5)
+    assert float(data["tip_ratio"][0]) == lobe.thickness_ratio
+    before = dict(mpl.rcParams)
+    figure = draw.thickness_map(data)
+    figure.canvas.draw()
+    words = {text.get_text() for text in figure.axes[0].texts}
+    widest = data["upper"] - data["lower"]
+    label = data.attrs["labels"].split("\n")[0].split()[int(widest[0].argmax("tongue"))]
+    assert {"safe zone", "response-\nunsafe\nzone", "B (1+9)/1: 0.0394", f"C {label}"} <= words
+    assert dict(mpl.rcParams) == before

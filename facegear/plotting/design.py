@@ -106,18 +106,18 @@ def _draw_zones(ax: Axes, chart: xr.Dataset) -> None:
     bottom, top = ax.get_ylim()
     critical = float(chart["tip_ratio"].max())
     ax.text(12, (critical + top) / 2, "safe zone", color=GREEN, va="center", fontsize=11)
+    rows = [line.split() for line in chart.attrs["labels"].split("\n")]
     width = (chart["upper"] - chart["lower"]).fillna(0.0)
-    lowest = width.isel(section=0)
-    widest = int(lowest.argmax("tongue"))
-    # The widest lobe again on the section above, where its name stands.
-    label = chart.attrs["labels"].split("\n")[0].split()[widest]
-    above = chart.attrs["labels"].split("\n")[1].split().index(label)
-    place = chart.isel(section=1, tongue=above)
+    label = rows[0][int(width.isel(section=0).argmax("tongue"))]
+    # The name stands on the section above the lowest, if the lobe reaches up to it.
+    section = 1 if label in rows[1] else 0
+    place = chart.isel(section=section, tongue=rows[section].index(label))
     ax.annotate(
         f"C {label}",
-        (float(place["upper"]), float(place["section"])),
-        xytext=(5, -9),
+        (float(place["peak"]), float(place["section"])),
+        xytext=(0, 9),
         textcoords="offset points",
+        ha="center",
         fontsize=9,
         color=INK,
         bbox=_PAPER,
@@ -129,7 +129,8 @@ def _draw_zones(ax: Axes, chart: xr.Dataset) -> None:
         color=VERMILION,
         ha="right",
         va="bottom",
-        fontsize=10,
+        fontsize=9,
+        bbox=_PAPER,
     )
 
 

@@ -51,9 +51,16 @@ def tip(drive, near, low_rpm, high_rpm, contact_ratio=None):
     return ratios[0] - values[0] * (ratios[1] - ratios[0]) / (values[1] - values[0])
 
 
+def cells(drive, places):
+    """Growth rates in the cells of a map that lie nearest to thickness ratio and speed [rpm]."""
+    for ratio, speed in places:
+        column = 50.0 + 4.75 * round((speed - 50.0) / 4.75)
+        value, tolerance = growth(fg.Body(drive, ratio), column)
+        yield anchor("growth_rate", value, tolerance, thickness_ratio=ratio, speed_rpm=column)
+
+
 def map_of_25():
-    drive = constant_diametral_pitch(25)
-    for ratio, speed in (
+    places = (
         (0.0252, 120.0),
         (0.03, 600.0),
         (0.03, 640.0),
@@ -68,19 +75,29 @@ def map_of_25():
         (0.04, 500.0),
         (0.045, 950.0),
         (0.036, 60.0),
-    ):
-        value, tolerance = growth(fg.Body(drive, ratio), speed)
-        yield anchor("growth_rate", value, tolerance, thickness_ratio=ratio, speed_rpm=speed)
+    )
+    yield from cells(constant_diametral_pitch(25), places)
 
 
-def sections(drive, ratio):
-    """Largest growth of the two strongest tongues of one section."""
+def chart(drive, places, ratio=0.033):
+    """Cells of a map, and the largest growth of the two strongest tongues of one section."""
+    yield from cells(drive, places)
     body = fg.Body(drive, ratio)
     found = tongues(fg.Transverse(body, LOAD), rpm(100.0), rpm(1000.0))
     strong = sorted(range(len(found)), key=lambda number: -found[number].growth_rate)[:2]
     for number in strong:
         value, tolerance = growth(body, float(fg.rpm(found[number].peak)))
         yield anchor("largest_growth", value, 10 * tolerance, section=ratio, tongue=number)
+
+
+# On the lobe C of each map, on its border, between two lobes, and in the safe zone.
+PLACES = {
+    "4_09b": ((0.03, 650.0), (0.035, 880.0), (0.03, 560.0), (0.044, 300.0)),
+    "4_09c": ((0.029, 545.0), (0.029, 575.0), (0.029, 450.0), (0.0445, 300.0)),
+    "4_13a": ((0.03, 700.0), (0.03, 740.0), (0.03, 600.0), (0.044, 300.0)),
+    "4_13b": ((0.03, 640.0), (0.03, 670.0), (0.03, 560.0), (0.044, 300.0)),
+    "4_13c": ((0.03, 570.0), (0.03, 610.0), (0.03, 500.0), (0.0445, 300.0)),
+}
 
 
 def bodies(family):
@@ -138,11 +155,11 @@ FIGURES = {
     "ch04_figure_4_07": (TEETH_ROUTE, lambda: teeth(constant_diametral_pitch)),
     "ch04_figure_4_11": (TEETH_ROUTE, lambda: teeth(constant_pitch_radius)),
     "ch04_figure_4_09a": (ROUTE, map_of_25),
-    "ch04_figure_4_09b": (ROUTE, lambda: sections(constant_diametral_pitch(28), 0.035)),
-    "ch04_figure_4_09c": (ROUTE, lambda: sections(constant_diametral_pitch(32), 0.035)),
-    "ch04_figure_4_13a": (ROUTE, lambda: sections(constant_pitch_radius(25), 0.035)),
-    "ch04_figure_4_13b": (ROUTE, lambda: sections(constant_pitch_radius(28), 0.035)),
-    "ch04_figure_4_13c": (ROUTE, lambda: sections(constant_pitch_radius(32), 0.035)),
+    "ch04_figure_4_09b": (ROUTE, lambda: chart(constant_diametral_pitch(28), PLACES["4_09b"])),
+    "ch04_figure_4_09c": (ROUTE, lambda: chart(constant_diametral_pitch(32), PLACES["4_09c"])),
+    "ch04_figure_4_13a": (ROUTE, lambda: chart(constant_pitch_radius(25), PLACES["4_13a"])),
+    "ch04_figure_4_13b": (ROUTE, lambda: chart(constant_pitch_radius(28), PLACES["4_13b"])),
+    "ch04_figure_4_13c": (ROUTE, lambda: chart(constant_pitch_radius(32), PLACES["4_13c"])),
     "ch04_figure_4_10": (ROUTE, lambda: bodies(constant_diametral_pitch)),
     "ch04_figure_4_14": (ROUTE, lambda: bodies(constant_pitch_radius)),
     "ch04_design_variants": (ROUTE, variants),
