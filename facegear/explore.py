@@ -6,7 +6,7 @@ here works without a screen; :mod:`facegear.plotting.explorer` puts controls and
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -248,18 +248,12 @@ def map_stages(
     rows = np.arange(min(step // 2, values.size - 1), values.size, step)
     coarse = _chart(model, speeds[columns], parameter, values[rows])
     growth = coarse.values[_nearest(values.size, rows)][:, _nearest(speeds.size, columns)]
-    periods = np.array([model.system(float(speed)).period for speed in speeds])
+    periods = _periods(model, speeds)
     final = np.zeros(speeds.size, dtype=bool)
     final[columns] = fast
 
     def stage() -> xr.DataArray:
-        return xr.DataArray(
-            growth.copy(),
-            dims=(str(coarse.dims[0]), "speed"),
-            coords={coarse.dims[0]: values, "speed": speeds, "period": ("speed", periods)},
-            name="growth_rate",
-            attrs={"units": "1/s", "computed": int(final.sum())},
-        )
+        return _labelled(coarse.dims[0], values, speeds, growth.copy(), periods, int(final.sum()))
 
     yield stage()
     missing = np.flatnonzero(~final)
@@ -269,6 +263,33 @@ def map_stages(
         growth[:, part] = _chart(model, speeds[part], parameter, values).values
         final[part] = True
         yield stage()
+
+
+def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
+    """Return the last stage of :func:`map_stages` without those before it."""
+    chart = _chart(model, speeds, parameter, values)
+    return _labelled(chart.dims[0], values, speeds, chart.values, _periods(model, speeds), speeds.size)
+
+
+def _periods(model: Model, speeds: FloatArray) -> FloatArray:
+    return np.array([model.system(float(speed)).period for speed in speeds])
+
+
+def _labelled(
+    name: Hashable,
+    values: FloatArray,
+    speeds: FloatArray,
+    growth: FloatArray,
+    periods: FloatArray,
+    computed: int,
+) -> xr.DataArray:
+    return xr.DataArray(
+        growth,
+        dims=(name, "speed"),
+        coords={name: values, "speed": speeds, "period": ("speed", periods)},
+        name="growth_rate",
+        attrs={"units": "1/s", "computed": computed},
+    )
 
 
 def _chart(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
@@ -308,7 +329,7 @@ class View:
     vertical : Quantity
         On the vertical axis.
     chart : xarray.DataArray
-        Complete map from :func:`map_stages`.
+        From :func:`reading_map`.
     value : float
         Of the vertical quantity in the cell [SI].
     detail : CellDetail
@@ -350,17 +371,11 @@ def view(
     quantity = study.swept(study.vertical if vertical is None else vertical)
     assert quantity.parameter is not None
     model = study.model(settings)
-    for chart in map_stages(model, *_swept_axes(study, settings, quantity)):
-        last = chart
+    speeds, values = study.axes(settings, quantity.name)
+    chart = reading_map(model, speeds, quantity.parameter, values)
     chosen = float(quantity.si(value))
     detail = cell_detail(replace_parameter(model, quantity.parameter, chosen), speed * study.speed.unit)
-    return View(study, settings, quantity, last, chosen, detail)
-
-
-def _swept_axes(study: Study, settings: Settings, quantity: Quantity) -> tuple[FloatArray, str, FloatArray]:
-    speeds, values = study.axes(settings, quantity.name)
-    assert quantity.parameter is not None
-    return speeds, quantity.parameter, values
+    return View(study, settings, quantity, chart, chosen, detail)
 
 
 def shown_only(study: Study, names: Sequence[str]) -> Study:

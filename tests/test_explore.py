@@ -16,6 +16,7 @@ from facegear.explore import (
     Quantity,
     Study,
     map_stages,
+    reading_map,
     shown_only,
     unstable,
     view,
@@ -49,6 +50,10 @@ def test_last_stage_is_the_map_and_the_first_one_agrees_where_it_is_computed(par
     stages = list(map_stages(model, FREQUENCIES, parameter, values))
     expected = stability_map(model, FREQUENCIES, parameter, values, jobs=1, progress=False)
     assert stages[-1].dims == expected.dims
+    at_once = reading_map(model, FREQUENCIES, parameter, values)
+    assert at_once.values == pytest.approx(expected.values, abs=1e-12)
+    assert at_once.attrs == stages[-1].attrs
+    assert at_once["period"].values == pytest.approx(2.0 * np.pi / FREQUENCIES)
     assert stages[-1].values == pytest.approx(expected.values, abs=1e-8)
     assert stages[0].values[2::5, 1::3] == pytest.approx(expected.values[2::5, 1::3], abs=1e-8)
     done = [stage.attrs["computed"] for stage in stages]

@@ -26,9 +26,11 @@ from facegear.explore import (
     Study,
     View,
     map_stages,
+    reading_map,
     unstable,
 )
 from facegear.models import Model, replace_parameter
+from facegear.parameters import FloatArray
 from facegear.plotting.cell import RING, cell_figure, described, draw_detail
 from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, WIDTH, styled
 
@@ -114,8 +116,8 @@ class MapExplorer:
         # Plotly's widget loses what is changed before a page shows it (Voilà shows it last): complete from the start.
         self._turn = 0
         self._quantity = study.swept(study.vertical)
-        self._model, stages = self._begun(self._quantity)
-        *_, self._chart = stages
+        self._model, axes = self._begun(self._quantity)
+        self._chart = reading_map(self._model, *axes)
         self.figure = _map_figure(self._chart, self._quantity, study.speed)
         self.figure.data[0].on_click(self.click)
         rows, columns = self._chart.shape
@@ -141,7 +143,8 @@ class MapExplorer:
         """Compute the map for what the controls say, or say why there is none."""
         quantity = self.study.swept(self.vertical.value)
         try:
-            model, stages = self._begun(quantity)
+            model, axes = self._begun(quantity)
+            stages = map_stages(model, *axes)
             first = next(stages)
         except _REFUSALS as problem:
             self._refuse(problem)
@@ -152,8 +155,8 @@ class MapExplorer:
         self._draw(first)
         _in_pieces(self._refine(stages, self._turn))
 
-    def _begun(self, quantity: Quantity) -> tuple[Model, Iterator[xr.DataArray]]:
-        """Model of what the controls say, and its map to come; controls that do not matter are switched off."""
+    def _begun(self, quantity: Quantity) -> tuple[Model, tuple[FloatArray, str, FloatArray]]:
+        """Model and axes of what the controls say; controls that do not matter are switched off."""
         settings = self.settings
         for control in self.study.controls:
             if isinstance(control, Quantity):
@@ -161,7 +164,7 @@ class MapExplorer:
         model = self.study.model(settings)
         speeds, values = self.study.axes(settings, quantity.name)
         assert quantity.parameter is not None
-        return model, map_stages(model, speeds, quantity.parameter, values)
+        return model, (speeds, quantity.parameter, values)
 
     def click(self, _trace: Any, points: Any, _state: Any) -> None:
         """Show the cell that was clicked; the signature is Plotly's.
