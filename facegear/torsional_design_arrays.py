@@ -25,8 +25,8 @@ _growth = partial(variable, units="1/s", rtol=1e-5, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
 
 # Far below what a figure shows, and several times cheaper than the default.
-_MAP = AdaptiveMagnus(1e-8)
-_FINE = AdaptiveMagnus(1e-10)
+_MAP = AdaptiveMagnus(1e-7)
+_FINE = AdaptiveMagnus(1e-9)
 
 
 # --- what the text takes for granted ------------------------------------------------------------------------------

@@ -327,7 +327,7 @@ def closing(name, parameter, chosen):
             speed = float(fg.rpm(found.speed))
             value = crossing(lambda c, v=speed: growth(replace(n, **{field: c * stiffness}), v), found.value)
             yield anchor("closing_damping", value, 2e-6 * value, tongue=row, root=column)
-            yield anchor("closes", 1.0 if column == 0 else -1.0, 0.0, tongue=row, root=column)
+            yield anchor("closes", 1.0 if column == 0 else -1.0, 0.5, tongue=row, root=column)
 
 
 FIGURE_ANCHORS = {
