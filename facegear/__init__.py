@@ -51,6 +51,10 @@ _PUBLIC = {
     "ResonanceBand": "hsu",
     "band_speeds": "hsu",
     "resonance_bands": "hsu",
+    # drives of one's own
+    "DriveFile": "drive_file",
+    "DriveFileError": "drive_file",
+    "read_drive_file": "drive_file",
     # design
     "critical_thickness": "design",
     "design_body": "design",

@@ -11,11 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-import nbformat  # noqa: E402
-from nbconvert import HTMLExporter  # noqa: E402
-
 from facegear.drive_file import DriveFileError, read_drive_file  # noqa: E402
-from tools.run_notebook import NotebookFailedError, execute  # noqa: E402
 
 NOTEBOOK = ROOT / "notebooks" / "your_drive.ipynb"
 
@@ -25,16 +21,31 @@ def main(arguments: list[str]) -> int:
     if len(arguments) not in (1, 2):
         sys.stderr.write("Say for example: python tools/run_drive.py my_drive.yaml\n")
         return 2
-    file = Path(arguments[0]).resolve()
+    file = Path(arguments[0]).absolute()
     folder = Path(arguments[1]).resolve() if len(arguments) == 2 else file.with_name(f"{file.stem}_results")
     try:
         read_drive_file(file)
-        # The exported page holds its pictures; only mathematics and widgets would come from the network.
-        parameters = {"drive_file": str(file), "output_directory": str(folder)}
-        execute(NOTEBOOK, folder / "report.ipynb", folder / "failed", parameters=parameters)
-    except (DriveFileError, NotebookFailedError) as problem:
+    except DriveFileError as problem:
         sys.stderr.write(f"{problem}\n")
         return 1
+    return make_report(file, folder)
+
+
+def make_report(file: Path, folder: Path) -> int:
+    """Execute the notebook for a file that can be used; return the exit code."""
+    # Here, because these take longer to load than a mistake takes to be told.
+    import nbformat
+    from nbconvert import HTMLExporter
+
+    from tools.run_notebook import NotebookFailedError, execute
+
+    try:
+        parameters = {"drive_file": str(file), "output_directory": str(folder)}
+        execute(NOTEBOOK, folder / "report.ipynb", folder / "failed", parameters=parameters)
+    except NotebookFailedError as problem:
+        sys.stderr.write(f"{problem}\n")
+        return 1
+    # The page holds its pictures; only mathematics comes from the network.
     page, _ = HTMLExporter(exclude_input=True).from_notebook_node(
         nbformat.read(folder / "report.ipynb", as_version=4)
     )
