@@ -242,7 +242,7 @@ class _VariedFamily(Family):
 
 
 def _dyads(load: ContactLoad, fraction: Array) -> tuple[Array, Array, Array]:
-    """w φφᵀ, w φφ'ᵀ and w φφ''ᵀ of a load at fractions (m,), each of shape (m, n, n)."""
+    """Return w φφᵀ, w φφ'ᵀ and w φφ''ᵀ of a load at fractions (m,), each of shape (m, n, n)."""
     phi = load.shape(fraction)
     force = (phi if load.weight is None else phi * load.weight(fraction))[..., :, None]
     parts = (phi, load.slope(fraction), load.curvature(fraction))
