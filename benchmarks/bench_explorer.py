@@ -1,0 +1,60 @@
+"""Time what the reader of the explorer waits for: the first, coarse map, the final one, the detail of a cell.
+
+Run from the repository root: ``python -m benchmarks.bench_explorer``. Processor seconds of one core, after a first
+map that pays for imports and derivations.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from facegear import studies
+from facegear.cell import cell_detail
+from facegear.explore import Study, map_stages
+from facegear.models import replace_parameter
+
+CASES: tuple[tuple[str, Study, str, Mapping[str, Any]], ...] = (
+    ("one pinion, bearing stiffness", studies.drive_study(), "stiffness", {}),
+    ("one pinion, bearing damping", studies.drive_study(), "damping", {}),
+    ("one pinion, pinion mass", studies.drive_study(), "mass", {}),
+    ("other teeth", studies.drive_study(), "stiffness", {"pinion_teeth": 29, "gear_teeth": 145}),
+    ("three pinions", studies.drive_study(), "stiffness", {"pinions": "3"}),
+    ("power of 300 hp", studies.drive_study(), "stiffness", {"power": 300.0}),
+    ("thickness on the vertical axis", studies.drive_study(), "thickness_ratio", {}),
+    ("power on the vertical axis", studies.drive_study(), "power", {}),
+    ("Mathieu's equation", studies.oscillator_study(), "depth", {}),
+    ("gearbox, damping of a shaft", studies.gearbox_study(), "input_damping", {}),
+)
+
+
+def measure(study: Study, vertical: str, changes: Mapping[str, Any]) -> tuple[float, float, float]:
+    """Processor seconds to the first and the last stage of the map, and for the middle cell."""
+    started = time.process_time()
+    settings = study.settings(changes)
+    model = study.model(settings)
+    speeds, values = study.axes(settings, vertical)
+    parameter = study.swept(vertical).parameter
+    assert parameter is not None
+    ends = [time.process_time() - started for _ in map_stages(model, speeds, parameter, values)]
+    chosen = replace_parameter(model, parameter, float(values[values.size // 4]))
+    started = time.process_time()
+    cell_detail(chosen, float(speeds[speeds.size // 2]))
+    return ends[0], ends[-1], time.process_time() - started
+
+
+def main() -> int:
+    """Print the table."""
+    measure(CASES[0][1], CASES[0][2], {"pinion_teeth": 25})
+    sys.stdout.write(f"{'processor seconds':34s}{'coarse':>9s}{'final':>9s}{'cell':>9s}\n")
+    for name, study, vertical, changes in CASES:
+        coarse, final, cell = measure(study, vertical, changes)
+        sys.stdout.write(f"{name:34s}{coarse:9.2f}{final:9.2f}{cell:9.2f}\n")
+        sys.stdout.flush()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
