@@ -386,5 +386,24 @@ def test_search_is_reached_by_keyboard_from_any_page(visit: Callable[..., Visit]
     assert not opened.strangers
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_title_page_says_in_one_screen_what_the_book_is(visit: Callable[..., Visit], scheme: str) -> None:
+    page = visit("intro.html", width=1200, scheme=scheme).page
+    cards = page.locator(".sd-card").all()
+    assert [card.locator(".sd-card-title").inner_text() for card in cards] == [
+        "Read",
+        "Rerun",
+        "Use your drive",
+    ]
+    maps = [image for image in page.locator(".bd-article img").all() if image.is_visible()]
+    assert [image.get_attribute("src").rsplit("_", 1)[1] for image in maps] == [f"{scheme}.svg"]
+    for element in (*cards, *maps):
+        box = element.bounding_box()
+        assert box["y"] >= 0
+        assert box["y"] + box["height"] <= 900
+    for card in cards:
+        assert card.locator("a").count()
+
+
 def test_front_door_leads_to_the_introduction() -> None:
     assert 'url=intro.html"' in (PAGES / "index.html").read_text(encoding="utf-8")
