@@ -34,7 +34,7 @@ from scipy.optimize import brentq
 
 from facegear.collocation import gauss_rule
 from facegear.disk import coordinates
-from facegear.parameters import MeshLoad, finite_array, integer_at_least, nonnegative, positive
+from facegear.parameters import MeshLoad, finite_array, integer_at_least, nonnegative, positive, within
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
 from facegear.rotation import DiskWaves
@@ -245,15 +245,16 @@ def weakened(model: Transverse, factor: float) -> Transverse:
     return replace(model, body=replace(model.body, material=material), load=load)
 
 
-def tongue_of(model: Transverse, pair: WavePair, reach: float) -> Tongue | None:
+def tongue_of(model: Transverse, pair: WavePair, below: float, above: float) -> Tongue | None:
     """Strongest tongue of its order close to the resonance of a pair of waves.
 
     Parameters
     ----------
     model : Transverse
     pair : WavePair
-    reach : float
-        Part of the resonance's speed by which the range looked at goes to either side.
+    below, above : float
+        Parts of the resonance's speed by which the range looked at goes below and above it: the mass of the pinions
+        lowers the frequencies.
 
     Returns
     -------
@@ -261,8 +262,11 @@ def tongue_of(model: Transverse, pair: WavePair, reach: float) -> Tongue | None:
         None if there is none.
     """
     centre = pair.speed(model)
-    share = positive("reach", reach)
-    found = tongues(model, centre * (1 - share), centre * (1 + share), threshold=1e-10)
+    low, high = (
+        centre * (1 - within("below", below, 0.0, 0.5)),
+        centre * (1 + within("above", above, 0.0, 0.5)),
+    )
+    found = tongues(model, low, high, threshold=1e-10)
     own = [t for t in found if (t.combination.kind, t.combination.order) == (pair.kind, pair.order)]
     return max(own, key=lambda tongue: tongue.growth_rate, default=None)
 

@@ -44,7 +44,9 @@ def with_teeth(model: Transverse, pinion_teeth: int) -> Transverse:
             f"pinion_teeth = {pinion_teeth} gives the face gear no whole number of teeth at this gear ratio"
         )
     resized = replace(drive, pinion_teeth=pinion_teeth, gear_teeth=teeth // drive.pinion_teeth)
-    return replace(model, body=replace(model.body, drive=resized))
+    # Tregold's contact ratio is that of the drive; any other was chosen and stays.
+    ratio = None if model.contact_ratio == drive.contact_ratio else model.contact_ratio
+    return replace(model, body=replace(model.body, drive=resized), contact_ratio=ratio)
 
 
 def touching_angle(drive: Drive) -> float:
@@ -402,7 +404,8 @@ def weak_tongues(
 
 def _growth_and_width(model: Transverse, pair: WavePair, factor: float) -> tuple[float, float]:
     # Far enough for the shift by the mean of the load, not as far as the tongues of other pairs.
-    tongue = tongue_of(model, pair, 0.05 * factor * len(model.pinion_angles) + 1e-6)
+    step = factor * len(model.pinion_angles)
+    tongue = tongue_of(model, pair, 0.04 * step, 0.005 * step)
     return (0.0, 0.0) if tongue is None else (tongue.growth_rate, float(rpm(tongue.width)))
 
 

@@ -30,7 +30,7 @@ ComplexArray = NDArray[np.complex128]
 
 #: Gauss nodes a panel, and largest product of fastest frequency and panel length [rad].
 NODES = 12
-PANEL_ANGLE = 6.0
+PANEL_ANGLE = 4.0
 # Phases closer than this are the same.
 _SAME_PHASE = 1e-9
 # Size relative to the largest entry below which coupling between nodal diameters is rounding.

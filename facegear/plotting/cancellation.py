@@ -35,7 +35,7 @@ def interference(curves: xr.Dataset, titles: Sequence[str], traced: Sequence[xr.
     for number, (top, bottom, title, found) in enumerate(zip(upper, lower, titles, traced, strict=True)):
         labels = [line.split() for line in found.attrs["labels"].split("\n")]
         growth = found["largest_growth"].values
-        for place, (name, colour) in enumerate(zip(names, (BLUE, VERMILION, GREEN), strict=True)):
+        for place, (name, colour) in enumerate(zip(names, (BLUE, VERMILION, GREEN), strict=False)):
             top.plot(curves["phase"], curves["interference"][number, place], color=colour, label=f"{name}/1")
             points = [
                 (float(found["section"][row]), growth[row, tongue])
@@ -48,7 +48,7 @@ def interference(curves: xr.Dataset, titles: Sequence[str], traced: Sequence[xr.
                 bottom.plot(x, y, _MARKERS[place], color=colour, markersize=5)
         top.set_title(title, loc="left", fontsize=10)
         top.set(ylim=(0, 1.05))
-        bottom.set(xlabel=r"phase $\psi$", ylim=(0, None))
+        bottom.set(xlabel=r"phase $\psi$", ylim=(0, None), xticks=(0, 0.5, 1))
     upper[0].set_ylabel("interference")
     lower[0].set_ylabel("growth rate [1/s]")
     figure.legend(*upper[0].get_legend_handles_labels(), loc="outside upper center", ncols=len(names))

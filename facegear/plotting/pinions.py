@@ -70,7 +70,7 @@ def _names(traced: xr.Dataset) -> list[list[str]]:
 
 
 def _draw_names(ax: Axes, traced: xr.Dataset, apart: float) -> None:
-    """Name each tongue where it grows fastest, beside the map's own colour; `apart` is the step between names."""
+    """Name each tongue where it grows fastest, a little above it; `apart` is the step between names."""
     places: dict[str, tuple[float, float, float]] = {}
     for number, labels in enumerate(_names(traced)):
         row = traced.isel(section=number)
@@ -81,13 +81,21 @@ def _draw_names(ax: Axes, traced: xr.Dataset, apart: float) -> None:
     low, high = sorted(ax.get_ylim())
     taken: list[tuple[float, float]] = []
     for label, (speed, height, _) in sorted(places.items(), key=lambda item: item[1][0]):
-        for step in (0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5):
+        for step in (0.6, -0.6, 1.6, -1.6, 2.6, -2.6, 3.6, -3.6, 4.6, -4.6):
             place = height + step * apart
             free = all(abs(speed - x) > 75 or abs(place - y) > 0.9 * apart for x, y in taken)
             if low + apart / 2 < place < high - apart / 2 and free:
                 break
         taken.append((speed, place))
         ax.text(speed, place, label, ha="center", va="center", fontsize=8, color=INK, bbox=_BOX)
+
+
+def _draw_borders(ax: Axes, traced: xr.Dataset) -> None:
+    """Traced borders as dots."""
+    for side in ("lower", "upper"):
+        for row in range(traced.sizes["section"]):
+            place = np.full(traced.sizes["tongue"], float(traced["section"][row]))
+            ax.plot(traced[side][row], place, ".", color=VERMILION, markersize=3)
 
 
 def _draw_zones(ax: Axes, zones: Sequence[float]) -> None:
@@ -152,6 +160,7 @@ def angle_maps(
             ax.set(xlabel=_SPEED, xlim=(speed[0], speed[-1]), ylim=(angle[0], angle[-1]))
             ax.grid(False)
         whole.set_ylabel(_ANGLE)
+        _draw_borders(whole, chart)
         _draw_names(whole, chart, (angle[-1] - angle[0]) / 28)
         if title in zones:
             _draw_zones(whole, zones[title])
@@ -162,6 +171,23 @@ def angle_maps(
         whole.set_title(title, loc="left", pad=16)
         near.set_title("close-up", loc="left", color=GREY, pad=16)
     _colour_bar(figure, list(grid.ravel()), largest)
+    return figure
+
+
+@styled
+def one_map(chart: xr.Dataset) -> Figure:
+    """Draw one map over total angle and speed.
+
+    Parameters
+    ----------
+    chart : xarray.Dataset
+        From :func:`facegear.pinions_arrays.angle_map`.
+    """
+    figure, (ax,) = panels(1, 1, 4.2)
+    mesh = _draw_growth(ax, chart["growth_rate"], _largest([chart]))
+    ax.set(xlabel=_SPEED, ylabel=_ANGLE)
+    ax.grid(False)
+    figure.colorbar(mesh, ax=ax, label=_GROWTH_LABEL)
     return figure
 
 
@@ -227,10 +253,7 @@ def phase_maps(charts: Mapping[str, xr.Dataset], zones: Sequence[float]) -> Figu
     for ax, (title, chart) in zip(axes, charts.items(), strict=True):
         growth = chart["growth_rate"]
         _draw_growth(ax, growth, largest)
-        for side in ("lower", "upper"):
-            for row in range(chart.sizes["section"]):
-                place = np.full(chart.sizes["tongue"], float(chart["section"][row]))
-                ax.plot(chart[side][row], place, ".", color=VERMILION, markersize=3)
+        _draw_borders(ax, chart)
         ax.set(
             ylabel=r"phase $\psi$", ylim=(-0.03, 1.03), xlim=(growth["speed_rpm"][0], growth["speed_rpm"][-1])
         )
