@@ -316,6 +316,7 @@ def test_buttons_lead_to_files_of_the_repository_where_its_address_is_known(proj
     assert binder.path == "/v2/gh/someone/facegear/main"
     assert parse_qs(binder.query) == {"urlpath": ["lab/tree/notebooks/03_one.ipynb"]}
     assert (project / "notebooks" / "03_one.ipynb").is_file()
+    assert "mybinder.org" not in {link.netloc for link in elsewhere("intro.html")}
     on_github = [link.path for link in buttons + elsewhere("intro.html") if link.netloc == "github.com"]
     assert "/someone/facegear" in on_github
     for path in on_github:
