@@ -229,6 +229,10 @@ def test_impossible_teeth_are_named():
     study = STUDIES["drive"][0]
     with pytest.raises(ValueError, match="gear_teeth must exceed pinion_teeth=60, got 50"):
         study.model(study.settings({"pinion_teeth": 60, "gear_teeth": 50}))
+    with pytest.raises(
+        ValueError, match="pinion_teeth=18 is too few for gear_teeth=124: the contact lines reach"
+    ):
+        study.model(study.settings({"pinion_teeth": 18, "gear_teeth": 124}))
     with pytest.raises(ValueError, match="bore_radius must"):
         study.model(study.settings({"bore_radius": 200.0, "module": 1.0}))
 
