@@ -133,9 +133,8 @@ class TorsionalFigure:
         that what the text says can be seen.
     scale : {"linear", "log"}
         Scale of that axis.
-    lowest_rpm, traced_rpm : float
-        Lowest speed of the map, and of the tongues traced on it [rpm of the face gear]: lower down there are ever
-        more and ever narrower tongues.
+    lowest_rpm : float
+        Lowest speed of the map [rpm of the face gear]: lower down there are ever more and ever narrower tongues.
     """
 
     base: ProportionalGearbox
@@ -144,7 +143,6 @@ class TorsionalFigure:
     highest: float
     scale: Literal["linear", "log"]
     lowest_rpm: float
-    traced_rpm: float
 
     def model(self, **options: Any) -> ProportionalGearbox:
         """Return the model of the figure; `options` replace fields of it."""
@@ -182,22 +180,17 @@ def _shafts(
 
 
 _BASE_9 = _inertias(gear_inertia=100.0, load_inertia=10.0)
-_FIGURE_9A = TorsionalFigure(_BASE_9, "gear_inertia", 1.0, 40.0, "linear", 100.0, 200.0)
-_FIGURE_9B = TorsionalFigure(_BASE_9, "load_inertia", 1.0, 40.0, "linear", 100.0, 200.0)
-_FIGURE_11A = TorsionalFigure(
-    _shafts(0.5, 0.5, 0.1, 3e-6), "input_stiffness", 0.003, 1.0, "log", 100.0, 140.0
-)
-_FIGURE_11B = TorsionalFigure(
-    _shafts(0.5, 0.5, 0.1, 1e-5), "output_stiffness", 0.003, 3.0, "log", 100.0, 140.0
-)
-_FIGURE_12A = TorsionalFigure(
-    _shafts(0.5, 0.009, 0.1, 1e-5), "input_damping", 1e-6, 1e-3, "log", 100.0, 100.0
-)
-_FIGURE_12B = TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "input_damping", 3e-7, 3e-4, "log", 60.0, 60.0)
-_FIGURE_13A = TorsionalFigure(
-    _shafts(0.5, 0.1, 0.03, 1e-5), "output_damping", 1e-6, 1e-4, "log", 100.0, 100.0
-)
-_FIGURE_13B = TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "output_damping", 3e-7, 3e-4, "log", 60.0, 60.0)
+_FIGURE_9A = TorsionalFigure(_BASE_9, "gear_inertia", 1.0, 40.0, "linear", 160.0)
+_FIGURE_9B = TorsionalFigure(_BASE_9, "load_inertia", 1.0, 40.0, "linear", 160.0)
+_BASE_11A, _BASE_11B = _shafts(0.5, 0.5, 0.1, 3e-6), _shafts(0.5, 0.5, 0.1, 1e-5)
+_FIGURE_10A = TorsionalFigure(_BASE_11A, "input_stiffness", 0.003, 1.0, "log", 130.0)
+_FIGURE_10B = TorsionalFigure(_BASE_11B, "output_stiffness", 0.003, 3.0, "log", 130.0)
+_FIGURE_11A = TorsionalFigure(_BASE_11A, "input_stiffness", 0.02, 1.0, "log", 130.0)
+_FIGURE_11B = TorsionalFigure(_BASE_11B, "output_stiffness", 0.03, 1.0, "log", 130.0)
+_FIGURE_12A = TorsionalFigure(_shafts(0.5, 0.009, 0.1, 1e-5), "input_damping", 1e-6, 1e-3, "log", 100.0)
+_FIGURE_12B = TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "input_damping", 3e-7, 3e-4, "log", 60.0)
+_FIGURE_13A = TorsionalFigure(_shafts(0.5, 0.1, 0.03, 1e-5), "output_damping", 1e-6, 1e-4, "log", 100.0)
+_FIGURE_13B = TorsionalFigure(_shafts(0.1, 0.01, 0.3, 2e-6), "output_damping", 3e-7, 3e-4, "log", 60.0)
 
 FIGURES: Mapping[str, TorsionalFigure] = MappingProxyType(
     {
@@ -205,8 +198,8 @@ FIGURES: Mapping[str, TorsionalFigure] = MappingProxyType(
         "7.8b": _FIGURE_9B,
         "7.9a": _FIGURE_9A,
         "7.9b": _FIGURE_9B,
-        "7.10a": _FIGURE_11A,
-        "7.10b": _FIGURE_11B,
+        "7.10a": _FIGURE_10A,
+        "7.10b": _FIGURE_10B,
         "7.11a": _FIGURE_11A,
         "7.11b": _FIGURE_11B,
         "7.12a": _FIGURE_12A,

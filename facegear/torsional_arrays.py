@@ -302,7 +302,7 @@ def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2
         ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] over (section, tongue); attribute
         ``labels``.
     """
-    low, high = rad_per_s(figure.traced_rpm), rad_per_s(HIGHEST_SPEED_RPM)
+    low, high = rad_per_s(figure.lowest_rpm), rad_per_s(HIGHEST_SPEED_RPM)
     found = [
         section.tongues
         for section in borders(figure.model(), figure.parameter, values, low, high, method=METHOD, jobs=jobs)
@@ -363,7 +363,7 @@ def hsu_sections(figure: TorsionalFigure, values: ArrayLike) -> xr.Dataset:
         ``hsu_lower``, ``hsu_upper`` and ``hsu_centre`` [rpm] over (section, band); attribute ``hsu_labels``.
     """
     array = finite_array("values", values)
-    span = (figure.traced_rpm, HIGHEST_SPEED_RPM)
+    span = (figure.lowest_rpm, HIGHEST_SPEED_RPM)
     models = [replace_parameter(figure.model(), figure.parameter, value) for value in array.tolist()]
     found = [hsu_bands(model, span) for model in models]
     both = ("section", "band")
@@ -397,7 +397,7 @@ def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
         the same modes and order has a prime.
     """
     model = replace_parameter(figure.model(), figure.parameter, value)
-    span = (figure.traced_rpm, HIGHEST_SPEED_RPM)
+    span = (figure.lowest_rpm, HIGHEST_SPEED_RPM)
     traced = tongues(model, rad_per_s(span[0]), rad_per_s(span[1]), method=METHOD)
     routes = {"floquet": traced, "hsu": hsu_bands(model, span), "blocks": block_bands(model, span)}
     bands = {name: _by_label(found) for name, found in routes.items()}
