@@ -188,9 +188,9 @@ def largest_power(
     """Largest power below which a drive is stable at all speeds of a range.
 
     All tongues are looked for at powers that rise to 3 times the critical power of the disk alone, until there are
-    some. Each is followed down to the power at which its largest growth rate vanishes. Just below the smallest of
-    these all tongues are looked for once more, and followed if there are any, until there are none. What can be missed
-    is an instability that comes and goes between two of the powers tried below the result.
+    some. The strongest is followed down to the power at which its largest growth rate vanishes. Just below that all
+    tongues are looked for once more, and the strongest followed, until there are none. What can be missed is an
+    instability that comes and goes between two of the powers tried below the result.
 
     Parameters
     ----------
@@ -235,8 +235,8 @@ def largest_power(
             break
     lowest = PowerLimit(math.inf, math.nan, "")
     while found:
-        tips = [_tip(at, stable, level, tongue, (low, high), tolerance / 2) for tongue in found]
-        lowest = min(tips, key=lambda tip: tip.power)
+        strongest = max(found, key=lambda tongue: tongue.growth_rate)
+        lowest = _tip(at, stable, level, strongest, (low, high), tolerance / 2)
         level = lowest.power * (1 - tolerance)
         found = tongues(at(level), low, high)
     return lowest

@@ -66,7 +66,8 @@ class HarmonicField:
         if not np.all((x >= self.bore_ratio - 1e-12) & (x <= 1.0 + 1e-12)):
             raise ValueError(f"x must lie between the bore ratio {self.bore_ratio} and 1, got {x}")
         t = np.clip(1.0 - 2.0 * np.log(x) / math.log(self.bore_ratio), -1.0, 1.0)
-        basis = chebyshev.chebvander(t, len(self.coefficients) - 1)
+        degree = len(self.coefficients) - 1
+        basis = chebyshev.chebvander(t.ravel(), degree).reshape(*t.shape, degree + 1)
         return np.moveaxis(np.tensordot(basis, self.coefficients, axes=1), (-2, -1), (0, 1))
 
     def stresses(self, x: ArrayLike) -> FloatArray:

@@ -47,7 +47,7 @@ def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``follower`` and ``dead`` (row, column) [1/(s² N)]; names of the coordinates in the attribute ``coordinates``.
+        ``follower`` and ``dead`` (row, column) [1/(s² N)]; names of the coordinates in the attribute ``basis``.
     """
     stress = EdgeLoadStress(body, 1.0, speed, harmonics)
     follower, dead = edge_load_stiffness(stress), edge_load_stiffness(stress, "dead")
@@ -64,7 +64,7 @@ def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
         coords={"row": number, "column": number},
         attrs={
             "parameters": described(body, speed=speed, harmonics=harmonics),
-            "coordinates": names,
+            "basis": names,
         },
     )
 

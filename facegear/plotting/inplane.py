@@ -53,22 +53,22 @@ def _disk(ax: Axes, radius: Any, angle: Any, values: NDArray[np.float64], larges
     )
     for edge in (0, -1):
         ax.plot(x[edge], y[edge], color=GREY, linewidth=0.8)
-    ax.set_aspect("equal")
+    # Room for the arrows of forces.
+    edge = 1.24e3 * float(radius[-1])
+    ax.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
     ax.axis("off")
     return mesh
 
 
-def _force(ax: Axes, radius: float, angle: float, tangential: bool) -> None:
-    """Draw an arrow along a force on the rim, its point at the place of the force."""
-    rim = radius * 1e3 * np.array([np.cos(angle), np.sin(angle)])
-    outwards = rim / np.hypot(*rim)
-    along = np.array([-outwards[1], outwards[0]]) if tangential else outwards
-    tail = rim - 0.35 * radius * 1e3 * along if tangential else rim
-    tip = rim if tangential else rim + 0.35 * radius * 1e3 * along
+def _force(ax: Axes, radius: float, angle: float, inward: float) -> None:
+    """Draw an arrow whose point is at the force on the rim; `inward` is its angle from the tangent."""
+    outwards = np.array([np.cos(angle), np.sin(angle)])
+    along = np.cos(inward) * np.array([-outwards[1], outwards[0]]) - np.sin(inward) * outwards
+    tip = 1.03 * radius * 1e3 * outwards
     ax.annotate(
         "",
-        xy=tuple(tip + 0.03 * radius * 1e3 * outwards),
-        xytext=tuple(tail + 0.03 * radius * 1e3 * outwards),
+        xy=tuple(tip),
+        xytext=tuple(tip - 0.35 * radius * 1e3 * along),
         arrowprops={"arrowstyle": "-|>", "color": VERMILION, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0},
         annotation_clip=False,
     )
@@ -90,31 +90,30 @@ def harmonics_on_disk(data: xr.Dataset, name: str) -> Figure:
     figure = Figure(figsize=(WIDTH, 2.5 * rows + 0.6), layout="constrained")
     axes = figure.subplots(rows, 3, squeeze=False).ravel()
     angle = np.linspace(0.0, 2 * np.pi, 181)
-    # The mean shear grows without bound towards a small bore: what k > 0 reaches sets the scale.
-    largest = float(np.abs(amplitudes.sel(harmonic=[k for k in shown if k > 0])).max())
     for ax in axes[len(shown) :]:
         ax.axis("off")
     for ax, k in zip(axes, shown, strict=False):
         wave = np.cos(k * angle) if name == "shear" else np.sin(k * angle)
         values = amplitudes.sel(harmonic=k).values[:, np.newaxis] * wave
-        mesh = _disk(ax, data["radius"].values, angle, values, largest)
-        _force(ax, float(data["radius"][-1]), 0.0, tangential=True)
-        ax.set_title(f"$k$ = {k}", fontsize=10)
+        # Harmonics differ too much in size for one scale.
+        largest = float(np.abs(values).max())
+        mesh = _disk(ax, data["radius"].values, angle, values / largest, 1.0)
+        _force(ax, float(data["radius"][-1]), 0.0, 0.0)
+        ax.set_title(f"$k$ = {k}, up to {largest:.2g} MPa", fontsize=10)
     figure.colorbar(
         mesh,
         ax=list(axes),
-        label=f"{_TITLES[name]} [MPa]",
+        label=f"{_TITLES[name]} over the largest of each panel",
         location="bottom",
         shrink=0.6,
         aspect=40,
-        extend="both",
     )
     return figure
 
 
 @styled
 def summed_on_disk(
-    fields: Mapping[str, xr.Dataset], forces: Mapping[str, Sequence[tuple[float, bool]]], largest: float
+    fields: Mapping[str, xr.Dataset], forces: Mapping[str, Sequence[tuple[float, float]]], largest: float
 ) -> Figure:
     """All harmonics together, one row a set of forces.
 
@@ -122,8 +121,8 @@ def summed_on_disk(
     ----------
     fields : mapping of str to xarray.Dataset
         Title to the arrays of :func:`facegear.inplane_arrays.summed_stress`.
-    forces : mapping of str to sequence of (float, bool)
-        Angle of each force and whether it is tangential, to draw it.
+    forces : mapping of str to sequence of (float, float)
+        Where each force acts and its angle inwards from the tangent [rad], to draw it.
     largest : float
         End of the scale of colours [Pa]; next to a force the stress grows without bound.
     """
@@ -134,8 +133,8 @@ def summed_on_disk(
             mesh = _disk(
                 ax, data["radius"].values, data["angle"].values, data[name].values / 1e6, largest / 1e6
             )
-            for angle, tangential in forces[title]:
-                _force(ax, float(data["radius"][-1]), angle, tangential)
+            for angle, inward in forces[title]:
+                _force(ax, float(data["radius"][-1]), angle, inward)
             ax.set_title(f"{title}: {_TITLES[name]}", fontsize=10)
     figure.colorbar(
         mesh,
@@ -199,6 +198,9 @@ def near_load(data: xr.Dataset) -> Figure:
         ylabel="stress over Flamant's",
         ylim=(0.0, 1.5),
     )
+    ticks = [0.0125, 0.025, 0.05, 0.1, 0.2, 0.4]
+    ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    ax.set_xticks([], minor=True)
     ax.legend(loc="lower right")
     return figure
 
@@ -360,18 +362,10 @@ def envelope(
             ax.plot(x, bounded, linestyle=line, color=colour, marker="o", markersize=4, label=name)
             free = ~np.isfinite(power)
             ax.plot(x[free], np.full(free.sum(), 0.97 * top), "^", color=colour, markersize=7)
-        ax.axhline(_hp(critical[title]), color=INK, linestyle=":", linewidth=1.2)
-        ax.annotate(
-            "disk alone",
-            (1.0, _hp(critical[title])),
-            xycoords=("axes fraction", "data"),
-            xytext=(-2, 3),
-            textcoords="offset points",
-            ha="right",
-        )
+        ax.axhline(_hp(critical[title]), color=INK, linestyle=":", linewidth=1.2, label="disk alone")
         ax.set(ylim=(0.0, top), xlabel=label)
         ax.set_title(title, loc="left")
     axes[0].set_ylabel("largest stable power [hp]")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure

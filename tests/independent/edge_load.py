@@ -17,15 +17,21 @@ from scipy.integrate import solve_ivp
 from tests.independent.complex_galerkin import ComplexDisk
 
 
-def shot(k: int, spin: float, nu: float, c: float, x: np.ndarray) -> np.ndarray:
-    """S, T, H over τ_k at radii x under a tangential load, shape (3, len(x)); steady part of (6-2), (6-3)."""
+def shot(
+    k: int, spin: float, nu: float, c: float, x: np.ndarray, load: tuple[float, float] = (0.0, 1.0)
+) -> np.ndarray:
+    """S, T, H at radii x, shape (3, len(x)), for S and T at the rim; steady part of (6-2), (6-3)."""
 
     def rates(r: float, y: np.ndarray) -> np.ndarray:
         U, V, dU, dV = y
         inertia_r = spin**2 * (-(k**2) * U + 2 * k * V - U)
         inertia_t = spin**2 * (-(k**2) * V + 2 * k * U - V)
         ddU = (1 - nu**2) * inertia_r - (
-            dU / r - U / r**2 - (1 - nu) / 2 * k**2 * U / r**2 - (1 + nu) / 2 * k * dV / r + (3 - nu) / 2 * k * V / r**2
+            dU / r
+            - U / r**2
+            - (1 - nu) / 2 * k**2 * U / r**2
+            - (1 + nu) / 2 * k * dV / r
+            + (3 - nu) / 2 * k * V / r**2
         )
         ddV = (1 - nu**2) * inertia_t - (
             (1 + nu) / 2 * k * dU / r
@@ -53,7 +59,7 @@ def shot(k: int, spin: float, nu: float, c: float, x: np.ndarray) -> np.ndarray:
         assert run.success, run.message
         runs.append(stresses(places, run.y))
     at_rim = np.array([[run[0, -1] for run in runs], [run[1, -1] for run in runs]])
-    factors = np.linalg.solve(at_rim, [0.0, 1.0])
+    factors = np.linalg.solve(at_rim, load)
     total = factors[0] * runs[0] + factors[1] * runs[1]
     return total[:, np.searchsorted(places, x)]
 
@@ -61,19 +67,14 @@ def shot(k: int, spin: float, nu: float, c: float, x: np.ndarray) -> np.ndarray:
 @cache
 def _at_rest(k: int, nu: float, c: float, load: tuple[int, int]) -> tuple:
     """Exponents, displacements and factors of the power solutions for k of 2 or more; load is (S, T) at the rim."""
-    mpmath.mp.dps = 60
+    mpmath.mp.dps = 60 + 2 * k
     nu, c = mpmath.mpf(nu), mpmath.mpf(c)
     terms = []
     for p in (k + 1, k - 1, -k - 1, -k + 1):
         # First equation on (u, v) x^p
         u = -(-(1 + nu) / 2 * k * p + (3 - nu) / 2 * k)
         v = mpmath.mpf(p * p - 1) - (1 - nu) / 2 * k * k
-        second = (
-            (1 + nu) / 2 * k * p * u
-            + (3 - nu) / 2 * k * u
-            + (1 - nu) / 2 * (p * p - 1) * v
-            - k * k * v
-        )
+        second = (1 + nu) / 2 * k * p * u + (3 - nu) / 2 * k * u + (1 - nu) / 2 * (p * p - 1) * v - k * k * v
         assert abs(second) < mpmath.mpf(10) ** -45 * k**4, "x^p must solve both equations"
         terms.append((p, u, v))
 
@@ -89,7 +90,9 @@ def _at_rest(k: int, nu: float, c: float, load: tuple[int, int]) -> tuple:
         )
 
     bore, rim = [parts(c, *term) for term in terms], [parts(mpmath.mpf(1), *term) for term in terms]
-    matrix = mpmath.matrix([[b[0] for b in bore], [b[1] for b in bore], [q[2] for q in rim], [q[3] for q in rim]])
+    matrix = mpmath.matrix(
+        [[b[0] for b in bore], [b[1] for b in bore], [q[2] for q in rim], [q[3] for q in rim]]
+    )
     factors = mpmath.lu_solve(matrix, mpmath.matrix([0, 0, *load]))
     return terms, factors, parts
 
@@ -97,8 +100,11 @@ def _at_rest(k: int, nu: float, c: float, load: tuple[int, int]) -> tuple:
 def at_rest(k: int, nu: float, c: float, x: float, load: tuple[int, int] = (0, 1)) -> np.ndarray:
     """S, T, H at one radius at rest, k of 2 or more, for unit σ_rr (1, 0) or σ_rθ (0, 1) at the rim."""
     terms, factors, parts = _at_rest(k, nu, c, load)
+    mpmath.mp.dps = 60 + 2 * k
     values = [parts(mpmath.mpf(x), *term) for term in terms]
-    return np.array([float(sum(f * v[2 + i] for f, v in zip(factors, values, strict=True))) for i in range(3)])
+    return np.array(
+        [float(sum(f * v[2 + i] for f, v in zip(factors, values, strict=True))) for i in range(3)]
+    )
 
 
 @dataclass(frozen=True, eq=False)
