@@ -227,7 +227,7 @@ def counts_as_markdown(chapters: Mapping[int, Sequence[LedgerRow]]) -> str:
     """
     lines = [f"| chapter | {' | '.join(STATUSES)} | all |", "|---" * (len(STATUSES) + 2) + "|"]
     everything = [row for rows in chapters.values() for row in rows]
-    for name, rows in {**chapters, "**all**": everything}.items():
+    for name, rows in [*chapters.items(), ("**all**", everything)]:
         counts = [sum(row.status == status for row in rows) for status in STATUSES]
         lines.append(f"| {name} | {' | '.join(map(str, counts))} | {len(rows)} |")
     return "\n".join(lines)

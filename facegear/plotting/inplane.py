@@ -54,8 +54,8 @@ def _disk(ax: Axes, radius: Any, angle: Any, values: NDArray[np.float64], larges
     for edge in (0, -1):
         ax.plot(x[edge], y[edge], color=GREY, linewidth=0.8)
     # Room for the arrows of forces.
-    edge = 1.24e3 * float(radius[-1])
-    ax.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
+    reach = 1.24e3 * float(radius[-1])
+    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
     ax.axis("off")
     return mesh
 
