@@ -17,7 +17,7 @@ import yaml
 from scipy.optimize import brentq
 from tqdm import tqdm
 
-from facegear import ContactPath
+from facegear import ContactPath, replace_parameter, tongues
 from facegear.cases import CASE_1, CASE_2, FIGURES
 from tests.independent import meshing_mpmath
 from tests.independent.complex_galerkin import Pinion, first_order_growth, multipliers, total_rate_multipliers
@@ -164,6 +164,41 @@ def total(contact_ratio, places):
             k_b=k_b,
         )
         yield growth(np.abs(found).max(), period, stiffness=value, speed_rpm=speed)
+
+
+def skew_line(places):
+    """Load at the mean radius of the pairs in contact, each running down (3-22): r = R2 - (R2 - R1) t/(cr T0)."""
+    drive, ratio = CASE_1.drive, CASE_1.drive.contact_ratio
+
+    def position(x):
+        times = np.asarray(x, dtype=float)[..., None] + np.arange(int(np.ceil(ratio)))
+        radii = drive.outer_radius - (drive.outer_radius - drive.inner_radius) * times / ratio
+        touching = times < ratio
+        return (radii * touching).sum(axis=-1) / touching.sum(axis=-1), np.zeros(np.shape(x))
+
+    for value, speed in places:
+        k_b = value * reference_stiffness(CASE_1)
+        period = 2 * np.pi / (drive.gear_teeth * rpm(speed))
+        found = multipliers(
+            complex_disk(CASE_1),
+            [Pinion(position, (0.0, ratio % 1.0))],
+            rpm(speed),
+            period,
+            m_p=nominal_mass(CASE_1),
+            c_b=3e-6 * k_b,
+            k_b=k_b,
+        )
+        yield growth(np.abs(found).max(), period, stiffness=value, speed_rpm=speed)
+
+
+def slow_tongues():
+    """Growth at the peaks of the tongues of Fig. 4.4(a) between 25 and 100 rpm, μ = 0.25."""
+    load = load_of(FIGURES["4.4a"], 0.25)
+    model = replace_parameter(FIGURES["4.4a"].model(), "stiffness", 0.25)
+    for number, tongue in enumerate(tongues(model, rpm(25.0), rpm(100.0))):
+        radius, period = spectral_radius(CASE_1, tongue.peak * 30 / np.pi, **load)
+        tolerance = 10 * RADIUS_TOLERANCE / (radius * period)
+        yield anchor("largest_growth", np.log(radius) / period, tolerance, section=0.25, tongue=number)
 
 
 def masses():
@@ -335,6 +370,13 @@ FILES = {
         lambda: total(CASE_1.drive.geometric_contact_ratio, ((0.02, 530.0), (0.5, 660.0), (1.6, 900.0))),
     ),
     "ch04_hsu": (MEAN_ROUTE, hsu),
+    "ch04_skew_line_4_04a": (
+        ROUTE,
+        lambda: skew_line(
+            ((0.08, 265.0), (0.11, 130.0), (0.35, 535.0), (0.76, 340.0), (0.5, 660.0), (1.6, 300.0))
+        ),
+    ),
+    "ch04_slow_tongues": (ROUTE, slow_tongues),
 }
 
 
