@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import os
+import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -71,7 +72,9 @@ def computed(
 
     store = None if cache_directory is None else _Store(Path(cache_directory))
     waiting = []
-    with tqdm(total=len(tasks), desc=description, disable=None if progress is None else not progress) as bar:
+    # tqdm itself takes a notebook for a terminal.
+    shown = sys.stderr.isatty() if progress is None else progress
+    with tqdm(total=len(tasks), desc=description, disable=not shown) as bar:
         for number, task in enumerate(tasks):
             kept = None if store is None else store.load(task)
             if kept is None:
