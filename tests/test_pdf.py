@@ -1,6 +1,7 @@
 """The printed book: `make pdf`, then `make test-book`."""
 
 import re
+import shutil
 import unicodedata
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,7 +9,7 @@ from pathlib import Path
 import nbformat
 import pytest
 import yaml
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, Playwright
 from pypdf import PdfReader
 from pypdf.generic import ArrayObject, Destination
 
@@ -97,11 +98,12 @@ def test_links_stay_inside_or_lead_to_the_web(reader: PdfReader) -> None:
 
 
 @pytest.fixture
-def sheet() -> Iterator[Page]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
-        yield browser.new_page(viewport={"width": 800, "height": 600})
-        browser.close()
+def sheet(chromium_driver: Playwright) -> Iterator[Page]:
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    assert found, "Chromium is missing: apt-get install chromium"
+    browser = chromium_driver.chromium.launch(executable_path=found, args=FLAGS)
+    yield browser.new_page(viewport={"width": 800, "height": 600})
+    browser.close()
 
 
 def page_with(tmp_path: Path, content: str) -> str:

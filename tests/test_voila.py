@@ -13,7 +13,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Page, Route, sync_playwright
+from playwright.sync_api import Page, Playwright, Route
 
 pytestmark = pytest.mark.book
 
@@ -73,7 +73,9 @@ def picture_of_the_map(page: Page) -> str | None:
     )
 
 
-def test_explorer_follows_controls_and_clicks_without_a_network(address: str) -> None:
+def test_explorer_follows_controls_and_clicks_without_a_network(
+    address: str, chromium_driver: Playwright
+) -> None:
     found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     assert found, "Chromium is missing: apt-get install chromium"
     strangers: list[str] = []
@@ -88,36 +90,35 @@ def test_explorer_follows_controls_and_clicks_without_a_network(address: str) ->
             strangers.append(route.request.url)
         route.abort()
 
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=found, args=FLAGS)
-        page = browser.new_page(viewport={"width": 1440, "height": 1100})
-        page.set_default_timeout(PATIENCE * 1e3)
-        page.route("**/*", guard)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.goto(address)
-        page.locator("img.facegear-cell").wait_for()
-        page.locator(".heatmaplayer image").first.wait_for(state="attached")
+    browser = chromium_driver.chromium.launch(executable_path=found, args=FLAGS)
+    page = browser.new_page(viewport={"width": 1440, "height": 1100})
+    page.set_default_timeout(PATIENCE * 1e3)
+    page.route("**/*", guard)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(address)
+    page.locator("img.facegear-cell").wait_for()
+    page.locator(".heatmaplayer image").first.wait_for(state="attached")
 
-        report, cell = page.locator(".facegear-report"), page.locator("img.facegear-cell")
-        assert ": stable" in report.inner_text()
-        drawn = cell.get_attribute("src")
-        box = page.locator(".js-plotly-plot .nsewdrag").first.bounding_box()
-        assert box is not None
-        # In the middle of the speeds and low on the axis of bearing stiffness there is a tongue.
-        page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.92 * box["height"])
-        page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.92 * box["height"])
-        wait_for(lambda: "(1+8)/1" in report.inner_text() and cell.get_attribute("src") != drawn)
+    report, cell = page.locator(".facegear-report"), page.locator("img.facegear-cell")
+    assert ": stable" in report.inner_text()
+    drawn = cell.get_attribute("src")
+    box = page.locator(".js-plotly-plot .nsewdrag").first.bounding_box()
+    assert box is not None
+    # In the middle of the speeds and low on the axis of bearing stiffness there is a tongue.
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.92 * box["height"])
+    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.92 * box["height"])
+    wait_for(lambda: "(1+8)/1" in report.inner_text() and cell.get_attribute("src") != drawn)
 
-        before, words = picture_of_the_map(page), report.inner_text()
-        page.locator(".widget-hslider:has-text('pinion mass') .noUi-handle").press("PageDown")
-        wait_for(lambda: picture_of_the_map(page) != before)
-        wait_for(lambda: report.inner_text() != words)
+    before, words = picture_of_the_map(page), report.inner_text()
+    page.locator(".widget-hslider:has-text('pinion mass') .noUi-handle").press("PageDown")
+    wait_for(lambda: picture_of_the_map(page) != before)
+    wait_for(lambda: report.inner_text() != words)
 
-        assert not page.locator("[role=alert]").count()
-        page.locator(".widget-hslider:has-text('teeth of the face gear') .noUi-handle").press("Home")
-        page.locator(".widget-hslider:has-text('teeth of the pinion') .noUi-handle").press("End")
-        page.locator("[role=alert]").wait_for()
-        assert "gear_teeth must exceed pinion_teeth" in page.locator("[role=alert]").inner_text()
-        browser.close()
+    assert not page.locator("[role=alert]").count()
+    page.locator(".widget-hslider:has-text('teeth of the face gear') .noUi-handle").press("Home")
+    page.locator(".widget-hslider:has-text('teeth of the pinion') .noUi-handle").press("End")
+    page.locator("[role=alert]").wait_for()
+    assert "gear_teeth must exceed pinion_teeth" in page.locator("[role=alert]").inner_text()
+    browser.close()
     assert not strangers
     assert not complaints
