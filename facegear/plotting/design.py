@@ -20,6 +20,7 @@ from facegear.plotting.style import (
     ORANGE,
     VERMILION,
     WIDTH,
+    draw_unstable,
     panels,
     styled,
 )
@@ -146,15 +147,7 @@ def thickness_map(chart: xr.Dataset) -> Figure:
     figure, (ax,) = panels(1, 1, 4.8)
     growth = chart["growth_rate"].values
     speed, ratio = chart["speed_rpm"].values, chart["thickness_ratio"].values
-    mesh = ax.pcolormesh(
-        speed,
-        ratio,
-        np.ma.masked_less_equal(growth, 0.0),
-        cmap=GROWTH,
-        norm=Normalize(0.0, float(growth.max())),
-        shading="nearest",
-        rasterized=True,
-    )
+    mesh = draw_unstable(ax, speed, ratio, growth, float(growth.max()))
     ax.contour(speed, ratio, growth, levels=[0.0], colors=INK, linewidths=0.6)
     for number, height in enumerate(chart["section"].values):
         row = chart.isel(section=number)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
@@ -18,12 +17,13 @@ from facegear.plotting.style import (
     BLUE,
     GREEN,
     GREY,
-    GROWTH,
     INK,
     ORANGE,
     PURPLE,
     VERMILION,
     WIDTH,
+    draw_border,
+    draw_unstable,
     panels,
     styled,
 )
@@ -267,17 +267,8 @@ def power_maps(maps: xr.Dataset, mean: Mapping[float, xr.Dataset]) -> Figure:
     speed, stiffness = maps["speed_rpm"].values, maps["stiffness"].values
     for number, (ax, power) in enumerate(zip(axes, powers, strict=True)):
         growth = maps["growth_rate"].sel(power=power).values
-        mesh = ax.pcolormesh(
-            speed,
-            stiffness,
-            np.ma.masked_less_equal(growth, 0.0),
-            cmap=GROWTH,
-            norm=Normalize(0.0, largest),
-            shading="nearest",
-            rasterized=True,
-        )
-        if (growth > 0).any():
-            ax.contour(speed, stiffness, growth, levels=[0.0], colors=INK, linewidths=0.7)
+        mesh = draw_unstable(ax, speed, stiffness, growth, largest)
+        draw_border(ax, speed, stiffness, growth)
         alone = mean[float(power)]
         if (alone["growth_rate"].values > 0).any():
             ax.contour(
@@ -313,15 +304,7 @@ def compared_clocks(charts: Mapping[str, xr.Dataset]) -> Figure:
         for column, power in enumerate(chart["power"].values):
             ax = axes[row * columns + column]
             growth = chart["growth_rate"].sel(power=power)
-            mesh = ax.pcolormesh(
-                chart["speed_rpm"],
-                chart["stiffness"],
-                np.ma.masked_less_equal(growth.values, 0.0),
-                cmap=GROWTH,
-                norm=Normalize(0.0, largest),
-                shading="nearest",
-                rasterized=True,
-            )
+            mesh = draw_unstable(ax, chart["speed_rpm"], chart["stiffness"], growth.values, largest)
             ax.set(xlim=(0.0, float(chart["speed_rpm"][-1])), ylim=(0.0, float(chart["stiffness"][-1])))
             ax.set_title(f"{title}, {_hp(power):.0f} hp", loc="left", fontsize=10)
             ax.grid(False)

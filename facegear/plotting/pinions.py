@@ -25,6 +25,7 @@ from facegear.plotting.style import (
     STEEL,
     VERMILION,
     WIDTH,
+    draw_unstable,
     panels,
     styled,
 )
@@ -43,15 +44,7 @@ def _largest(charts: Sequence[xr.Dataset]) -> float:
 
 def _draw_growth(ax: Axes, growth: xr.DataArray, largest: float) -> Any:
     """Colour what is unstable; rows are the first dimension."""
-    return ax.pcolormesh(
-        growth["speed_rpm"],
-        growth[growth.dims[0]],
-        np.ma.masked_less_equal(growth.values, 0.0),
-        cmap=GROWTH,
-        norm=Normalize(0.0, largest),
-        shading="nearest",
-        rasterized=True,
-    )
+    return draw_unstable(ax, growth["speed_rpm"], growth[growth.dims[0]], growth.values, largest)
 
 
 def _colour_bar(figure: Figure, axes: Sequence[Axes], largest: float) -> None:

@@ -7,10 +7,20 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from facegear.plotting.style import BLUE, FAINT, GREEN, GREY, GROWTH, INK, VERMILION, panels, styled
+from facegear.plotting.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    GREY,
+    INK,
+    VERMILION,
+    draw_border,
+    draw_unstable,
+    panels,
+    styled,
+)
 
 _SPEED = "speed of the face gear [rpm]"
 
@@ -86,17 +96,8 @@ def growth_map(chart: xr.Dataset, tongues: xr.Dataset, value: float, axis: str, 
     figure, (ax,) = panels(1, 1, 4.4)
     growth = chart["growth_rate"].values
     speed, values = chart["speed_rpm"].values, chart[str(chart["growth_rate"].dims[0])].values * scale
-    mesh = ax.pcolormesh(
-        speed,
-        values,
-        np.ma.masked_less_equal(growth, 0.0),
-        cmap=GROWTH,
-        norm=Normalize(0.0, max(1e-9, float(growth.max()))),
-        shading="nearest",
-        rasterized=True,
-    )
-    if (growth > 0).any() and (growth <= 0).any():
-        ax.contour(speed, values, growth, levels=[0.0], colors=INK, linewidths=0.7)
+    mesh = draw_unstable(ax, speed, values, growth, max(1e-9, float(growth.max())))
+    draw_border(ax, speed, values, growth)
     ax.axhline(value * scale, color=GREY, linewidth=1.0, linestyle="--", label="this drive")
     for low, high in zip(tongues["lower"].values, tongues["upper"].values, strict=True):
         ax.plot([low, high], [value * scale] * 2, "|-", color=VERMILION, linewidth=2.0, markersize=9)

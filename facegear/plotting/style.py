@@ -10,7 +10,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib import rcsetup
 from matplotlib.axes import Axes
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 P = ParamSpec("P")
@@ -77,6 +78,39 @@ def panels(rows: int = 1, columns: int = 1, height: float = 4.0, **options: Any)
     figure = Figure(figsize=(WIDTH, height), layout="constrained")
     axes = figure.subplots(rows, columns, squeeze=False, **options)
     return figure, list(axes.ravel())
+
+
+def draw_unstable(
+    axes: Axes, speed: Any, value: Any, growth: Any, largest: float, colours: Colormap = GROWTH
+) -> QuadMesh:
+    """Colour the unstable cells of a map; stable ones stay empty.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    speed, value : array_like
+        Columns and rows of the map, in the units of the axes.
+    growth : array_like, shape (rows, columns)
+        Growth rates [1/s].
+    largest : float
+        Growth rate of the darkest colour [1/s].
+    colours : matplotlib.colors.Colormap, optional
+    """
+    return axes.pcolormesh(
+        speed,
+        value,
+        np.ma.masked_less_equal(growth, 0.0),
+        cmap=colours,
+        norm=Normalize(0.0, largest),
+        shading="nearest",
+        rasterized=True,
+    )
+
+
+def draw_border(axes: Axes, speed: Any, value: Any, growth: Any) -> None:
+    """Draw the line between stable and unstable cells, if there is one."""
+    if (growth > 0).any() and (growth <= 0).any():
+        axes.contour(speed, value, growth, levels=[0.0], colors=INK, linewidths=0.7)
 
 
 def label_line(axes: Axes, text: str, xy: tuple[float, float], xytext: tuple[float, float]) -> None:

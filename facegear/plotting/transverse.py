@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from facegear.plotting.style import (
     BLUE,
     GREEN,
     GREY,
-    GROWTH,
     INK,
     ORANGE,
     VERMILION,
     WIDTH,
+    draw_border,
+    draw_unstable,
     panels,
     styled,
 )
@@ -44,17 +44,8 @@ def _draw_map(ax: Axes, chart: xr.Dataset, largest: float) -> Any:
     name = _parameter(chart)
     growth = chart["growth_rate"].values
     speed, value = chart["speed_rpm"].values, chart[name].values * _SCALE[name]
-    mesh = ax.pcolormesh(
-        speed,
-        value,
-        np.ma.masked_less_equal(growth, 0.0),
-        cmap=GROWTH,
-        norm=Normalize(0.0, largest),
-        shading="nearest",
-        rasterized=True,
-    )
-    if (growth > 0).any():
-        ax.contour(speed, value, growth, levels=[0.0], colors=INK, linewidths=0.7)
+    mesh = draw_unstable(ax, speed, value, growth, largest)
+    draw_border(ax, speed, value, growth)
     ax.set(xlim=(0.0, float(speed[-1])), ylim=(0.0, float(value[-1])), ylabel=_AXIS[name])
     ax.grid(False)
     return mesh

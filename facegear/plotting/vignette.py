@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
-from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
-from facegear.plotting.style import GROWTH, INK, styled
+from facegear.plotting.style import GROWTH, INK, draw_unstable, styled
 
 
 @dataclass(frozen=True)
@@ -52,15 +52,7 @@ def vignette(chart: xr.Dataset, look: Look) -> Figure:
     axes.patch.set_alpha(0.0)
     growth = chart["growth_rate"].values
     speed, stiffness = chart["speed_rpm"].values, chart["stiffness"].values
-    axes.pcolormesh(
-        speed,
-        stiffness,
-        np.ma.masked_less_equal(growth, 0.0),
-        cmap=look.growth,
-        norm=Normalize(0.0, float(growth.max())),
-        shading="nearest",
-        rasterized=True,
-    )
+    draw_unstable(axes, speed, stiffness, growth, float(growth.max()), look.growth)
     axes.set(xlim=(0.0, speed[-1]), ylim=(0.0, stiffness[-1]))
     axes.set_xlabel("speed of the face gear [rpm]", color=look.ink)
     axes.set_ylabel(r"bearing stiffness $\mu$", color=look.ink)
