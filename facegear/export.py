@@ -7,7 +7,6 @@ its axis, the tooth is centred on the −y axis.
 from __future__ import annotations
 
 import csv
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from facegear.contact import ContactRegion
+from facegear.files import written_whole
 from facegear.flanks import shaper_points, shaper_to_gear
 from facegear.geometry import Drive
 from facegear.parameters import FloatArray, integer_at_least
@@ -180,8 +180,8 @@ def write_stl(mesh: Mesh, path: str | Path, title: str) -> Path:
     record["normal"], record["corners"] = normals / size, corners
     # A header that starts with "solid" would make it a text file to some programs.
     header = f"facegear, millimetres: {title}".encode("ascii", "replace")[:80].ljust(80)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(header + np.array(len(corners), dtype="<u4").tobytes() + record.tobytes())
+    with written_whole(path) as place:
+        place.write_bytes(header + np.array(len(corners), dtype="<u4").tobytes() + record.tobytes())
     return path
 
 
@@ -234,15 +234,9 @@ def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
         If the columns differ in length.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with temporary.open("w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(columns)
-            for row in zip(*columns.values(), strict=True):
-                writer.writerow(f"{v:.12g}" if isinstance(v, float | np.floating) else v for v in row)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with written_whole(path) as place, place.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        for row in zip(*columns.values(), strict=True):
+            writer.writerow(f"{v:.12g}" if isinstance(v, float | np.floating) else v for v in row)
     return path

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import csv
 import math
-import os
 import re
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from decimal import Decimal, InvalidOperation
@@ -20,6 +18,7 @@ from typing import Any
 
 import yaml
 
+from facegear.files import written_whole
 from facegear.parameters import known_keys
 
 REPRODUCED = "reproduced"
@@ -260,9 +259,8 @@ def save_csv(chapters: Mapping[int, Sequence[LedgerRow]], path: str | Path) -> P
         The file; its folder is made.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
     names = [field.name for field in fields(PrintedValue)]
-    with path.open("w", encoding="utf-8", newline="") as stream:
+    with written_whole(path) as place, place.open("w", encoding="utf-8", newline="") as stream:
         table = csv.DictWriter(stream, ["chapter", *names, "computed"])
         table.writeheader()
         for number, rows in chapters.items():
@@ -274,16 +272,9 @@ def save_csv(chapters: Mapping[int, Sequence[LedgerRow]], path: str | Path) -> P
 def save_ledger(rows: tuple[LedgerRow, ...], path: str | Path) -> Path:
     """Write the rows of one chapter as YAML for the ledger page; the file appears whole or not at all."""
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
     content = [{**asdict(row.printed), "computed": row.computed} for row in rows]
-    handle, temporary = tempfile.mkstemp(suffix=".yaml", dir=path.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            yaml.safe_dump(content, stream, sort_keys=False, allow_unicode=True)
-        os.chmod(temporary, 0o644)  # mkstemp makes it private
-        os.replace(temporary, path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    with written_whole(path) as place, place.open("w", encoding="utf-8") as stream:
+        yaml.safe_dump(content, stream, sort_keys=False, allow_unicode=True)
     return path
 
 

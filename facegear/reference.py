@@ -9,15 +9,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
-import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+
+from facegear.files import written_whole
+from facegear.parameters import FloatArray
 
 _DIGEST = "content_sha256"
 # What may differ between two files that hold the same result.
@@ -93,6 +94,32 @@ def variable(
     return dimensions, values, attributes
 
 
+def filled_rows(found: Sequence[Sequence[Any]], name: str) -> FloatArray:
+    """Attribute of things found, tongues or bands, row by row; rows are filled up with NaN.
+
+    Parameters
+    ----------
+    found : sequence of sequence
+        Rows of different lengths.
+    name : str
+        Attribute, a number.
+
+    Returns
+    -------
+    ndarray, shape (rows, longest)
+        At least one column wide.
+    """
+    table = np.full((len(found), max((len(row) for row in found), default=0) or 1), np.nan)
+    for i, row in enumerate(found):
+        table[i, : len(row)] = [getattr(item, name) for item in row]
+    return table
+
+
+def label_lines(found: Sequence[Sequence[Any]]) -> str:
+    """Labels of things found, one line a row, separated by blanks."""
+    return "\n".join(" ".join(item.label for item in row) for row in found)
+
+
 def digest(dataset: xr.Dataset) -> str:
     """SHA-256 over names, dimensions, values and attributes of a dataset, provenance left out."""
     state = hashlib.sha256()
@@ -146,15 +173,8 @@ def save(dataset: xr.Dataset, path: str | Path) -> Path:
     stored = _as_netcdf3(dataset)
     stored.attrs["versions"] = json.dumps({"numpy": np.__version__, "xarray": xr.__version__}, sort_keys=True)
     stored.attrs[_DIGEST] = digest(stored)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(suffix=".nc", dir=path.parent)
-    os.close(handle)
-    try:
-        stored.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT")
-        os.chmod(temporary, 0o644)  # mkstemp makes it private; a data file is to be read
-        os.replace(temporary, path)
-    finally:
-        Path(temporary).unlink(missing_ok=True)
+    with written_whole(path) as place:
+        stored.to_netcdf(place, engine="scipy", format="NETCDF3_64BIT")
     return path
 
 

@@ -25,7 +25,7 @@ from facegear.models import replace_parameter
 from facegear.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.radau import Radau
-from facegear.reference import variable
+from facegear.reference import filled_rows, label_lines, variable
 from facegear.stepping import Family
 from facegear.tracing import borders, tongues
 
@@ -308,7 +308,7 @@ def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2
         for section in borders(figure.model(), figure.parameter, values, low, high, method=METHOD, jobs=jobs)
     ]
     both = ("section", "tongue")
-    tables = {name: _table(found, name) for name in ("lower", "upper", "peak", "growth_rate")}
+    tables = {name: filled_rows(found, name) for name in ("lower", "upper", "peak", "growth_rate")}
     return xr.Dataset(
         {
             "lower": _speed(both, rpm(tables["lower"]), "Lower border"),
@@ -317,7 +317,7 @@ def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2
             "largest_growth": _growth(both, tables["growth_rate"], "Largest growth rate of the tongue"),
         },
         coords={"section": np.asarray(values, dtype=float)},
-        attrs={"labels": _labels(found)},
+        attrs={"labels": label_lines(found)},
     )
 
 
@@ -373,9 +373,9 @@ def hsu_sections(figure: TorsionalFigure, values: ArrayLike) -> xr.Dataset:
         "centre": "Speed at which natural frequencies combine",
     }
     return xr.Dataset(
-        {f"hsu_{name}": _speed(both, rpm(_table(found, name)), text) for name, text in names.items()},
+        {f"hsu_{name}": _speed(both, rpm(filled_rows(found, name)), text) for name, text in names.items()},
         coords={"section": array},
-        attrs={"hsu_labels": _labels(found)},
+        attrs={"hsu_labels": label_lines(found)},
     )
 
 
@@ -476,15 +476,3 @@ def section_intervals(chart: xr.Dataset, label: str) -> dict[float, tuple[float,
                 float(chart["upper"][number, place]),
             )
     return found
-
-
-def _table(found: Sequence[Sequence[Any]], name: str) -> FloatArray:
-    """Rows of different length filled up with NaN."""
-    table = np.full((len(found), max(1, *(len(row) for row in found)) if found else 1), np.nan)
-    for i, row in enumerate(found):
-        table[i, : len(row)] = [getattr(item, name) for item in row]
-    return table
-
-
-def _labels(found: Sequence[Sequence[Any]]) -> str:
-    return "\n".join(" ".join(item.label for item in row) for row in found)

@@ -17,7 +17,7 @@ from facegear.kinematics import ContactPath
 from facegear.models import Model
 from facegear.modulation_arrays import describe, relative_modulation
 from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
-from facegear.reference import variable
+from facegear.reference import filled_rows, label_lines, variable
 from facegear.sensitivity import border_derivatives, parameter_value
 from facegear.tracing import Tongue, tongues
 
@@ -73,15 +73,9 @@ def variant_tongues(models: Mapping[str, ProportionalGearbox], speeds_rpm: tuple
     """
     low, high = (float(rad_per_s(limit)) for limit in speeds_rpm)
     found = [tongues(model, low, high, method=_FINE) for model in models.values()]
-    longest = max(1, *(len(row) for row in found))
     orders = np.arange(1, 5)
 
-    def table(name: str) -> FloatArray:
-        rows = np.full((len(found), longest), np.nan)
-        for i, row in enumerate(found):
-            rows[i, : len(row)] = [getattr(tongue, name) for tongue in row]
-        return rows
-
+    table = partial(filled_rows, found)
     both = ("variant", "tongue")
     modulation = [relative_modulation(model, high, int(orders[-1])) for model in models.values()]
     return xr.Dataset(
@@ -93,11 +87,15 @@ def variant_tongues(models: Mapping[str, ProportionalGearbox], speeds_rpm: tuple
                 ("variant", "order"), modulation, "Harmonics of the stiffness of mode 1", "1", atol=1e-8
             ),
         },
-        coords={"variant": np.arange(len(found)), "tongue": np.arange(longest), "order": orders},
+        coords={
+            "variant": np.arange(len(found)),
+            "tongue": np.arange(table("lower").shape[1]),
+            "order": orders,
+        },
         attrs={
             "parameters": describe(next(iter(models.values()))),
             "variants": "; ".join(models),
-            "labels": "\n".join(" ".join(tongue.label for tongue in row) for row in found),
+            "labels": label_lines(found),
         },
     )
 

@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 from facegear.hsu import band_speeds
 from facegear.maps import stability_map
 from facegear.models import replace_parameter
-from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
-from facegear.reference import variable
+from facegear.parameters import integer_at_least, rad_per_s, rpm
+from facegear.reference import filled_rows, label_lines, variable
 from facegear.tracing import Tongue, borders, tongues
 from facegear.transverse import Transverse, reference_stiffness
 
@@ -243,14 +243,7 @@ def stability_figure(
 
 def tongue_table(found: Sequence[Sequence[Tongue]], values: ArrayLike, parameters: str) -> xr.Dataset:
     """Rows of tongues of different numbers as arrays filled up with NaN, as :func:`tongue_sections` returns them."""
-    longest = max(1, *(len(row) for row in found))
-
-    def table(name: str) -> FloatArray:
-        rows = np.full((len(found), longest), np.nan)
-        for i, row in enumerate(found):
-            rows[i, : len(row)] = [getattr(tongue, name) for tongue in row]
-        return rows
-
+    table = partial(filled_rows, found)
     both = ("section", "tongue")
     return xr.Dataset(
         {
@@ -260,10 +253,10 @@ def tongue_table(found: Sequence[Sequence[Tongue]], values: ArrayLike, parameter
             "peak": variable(both, rpm(table("peak")), "Speed of the largest growth", "rpm", atol=0.1),
             "largest_growth": _growth(both, table("growth_rate"), "Largest growth rate of the tongue"),
         },
-        coords={"section": np.asarray(values, dtype=float), "tongue": np.arange(longest)},
+        coords={"section": np.asarray(values, dtype=float), "tongue": np.arange(table("lower").shape[1])},
         attrs={
             "parameters": parameters,
-            "labels": "\n".join(" ".join(tongue.label for tongue in row) for row in found),
+            "labels": label_lines(found),
         },
     )
 
@@ -371,11 +364,7 @@ def hsu_bands(
         band_speeds(replace_parameter(model, parameter, value).system, speeds, order=order, points=21)
         for value in values
     ]
-    longest = max(1, *(len(row) for row in rows))
-    tables = {name: np.full((len(rows), longest), np.nan) for name in ("lower", "upper", "centre")}
-    for name, table in tables.items():
-        for i, row in enumerate(rows):
-            table[i, : len(row)] = [rpm(getattr(band, name)) for band in row]
+    tables = {name: rpm(filled_rows(rows, name)) for name in ("lower", "upper", "centre")}
     both = ("section", "band")
     return xr.Dataset(
         {
@@ -383,9 +372,9 @@ def hsu_bands(
             "upper": _speed(both, tables["upper"], "Upper border after Hsu"),
             "centre": _speed(both, tables["centre"], "Speed at which frequencies of the mean system combine"),
         },
-        coords={"section": list(values), "band": np.arange(longest)},
+        coords={"section": list(values), "band": np.arange(tables["lower"].shape[1])},
         attrs={
             "parameters": f"{describe(model)}, swept = {parameter}",
-            "labels": "\n".join(" ".join(band.label for band in row) for row in rows),
+            "labels": label_lines(rows),
         },
     )

@@ -1,5 +1,7 @@
 """Stored arrays: what is saved comes back, and nothing damaged, edited or out of tolerance is accepted."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -107,3 +109,11 @@ def test_variable_without_tolerance_cannot_be_saved(tmp_path):
     with pytest.raises(ValueError, match="'radius' lacks the attribute"):
         reference.save(dataset, tmp_path / "fig.nc")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_rows_of_different_length_are_filled_up():
+    found = [[SimpleNamespace(label="(1+1)/1", lower=2.0), SimpleNamespace(label="(1+2)/1", lower=3.0)], []]
+    np.testing.assert_array_equal(reference.filled_rows(found, "lower"), [[2.0, 3.0], [np.nan, np.nan]])
+    assert reference.label_lines(found) == "(1+1)/1 (1+2)/1\n"
+    assert reference.filled_rows([[]], "lower").shape == (1, 1)
+    assert reference.filled_rows([], "lower").shape == (0, 1)
