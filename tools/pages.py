@@ -64,12 +64,6 @@ def figures_of(notebook: Path) -> list[BookFigure]:
     return found
 
 
-def title_of(notebook: Path) -> str:
-    """Return the heading a notebook opens with."""
-    first = nbformat.read(notebook, as_version=4).cells[0].source
-    return re.search(r"^# (.+)$", first, re.MULTILINE)[1]
-
-
 def counterparts(printed: PrintedFigure, figures: Iterable[BookFigure]) -> list[BookFigure]:
     """Return the figures of the book that show what a figure of the dissertation shows.
 

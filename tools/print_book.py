@@ -92,9 +92,6 @@ FIT = """() => {
 }"""
 
 
-DECODED = "images => Promise.all(images.map(image => { image.loading = 'eager'; return image.decode(); }))"
-
-
 class QuietHandler(SimpleHTTPRequestHandler):
     """Serves files without a word."""
 
