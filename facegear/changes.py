@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from facegear.floquet import Method, growth_rate
-from facegear.models import parameter_path, replace_parameter
+from facegear.models import replace_parameter, value_of
 from facegear.multiplier_curves import method_for
 from facegear.parameters import integer_at_least, rpm
 from facegear.reference import variable
@@ -89,7 +89,7 @@ def possible_changes(model: Transverse | Torsional) -> tuple[Change, ...]:
     changes = [
         Change(name, partial(_scaled, parameter=parameter))
         for name, parameter in names.items()
-        if _parameter(model, parameter) != 0.0
+        if value_of(model, parameter) != 0.0
     ]
     pinions = len(model.pinion_angles) if isinstance(model, Transverse) else 0
     changes += [
@@ -99,14 +99,8 @@ def possible_changes(model: Transverse | Torsional) -> tuple[Change, ...]:
     return tuple(changes)
 
 
-def _parameter(model: Any, name: str) -> float:
-    for field in parameter_path(model, name):
-        model = getattr(model, field)
-    return float(model)
-
-
 def _scaled(model: Any, change: float, parameter: str) -> Any:
-    return replace_parameter(model, parameter, _parameter(model, parameter) * (1 + change))
+    return replace_parameter(model, parameter, value_of(model, parameter) * (1 + change))
 
 
 def _rephased(model: Transverse, change: float, pinion: int) -> Transverse:

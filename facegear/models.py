@@ -108,6 +108,14 @@ def replace_parameter(model: ModelT, name: str, value: float) -> ModelT:
     return replaced
 
 
+def value_of(model: object, name: str) -> float:
+    """Present value of a parameter of a model, named as for :func:`parameter_path`."""
+    part: Any = model
+    for field in parameter_path(model, name):
+        part = getattr(part, field)
+    return float(part)
+
+
 def is_whole_number(model: object, name: str) -> bool:
     """Whether a parameter counts something, as teeth: its field is declared as ``int``."""
     *outer, last = parameter_path(model, name)

@@ -15,11 +15,10 @@ from facegear.floquet import AdaptiveMagnus
 from facegear.gearboxes import DRIVE, ProportionalGearbox
 from facegear.hsu import resonance_bands
 from facegear.modal import standard_form
-from facegear.models import Model
+from facegear.models import Model, value_of
 from facegear.parameters import FloatArray, integer_at_least, nonnegative, positive, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.reference import variable
-from facegear.sensitivity import parameter_value
 from facegear.tracing import tongues
 
 _growth = partial(variable, units="1/s", rtol=1e-5, atol=1e-3)
@@ -255,5 +254,5 @@ def describe(model: ProportionalGearbox) -> str:
         "output_damping",
         "contact_ratio",
     )
-    numbers = ", ".join(f"{name} = {parameter_value(model, 1.0, name):.10g}" for name in names)
+    numbers = ", ".join(f"{name} = {value_of(model, name):.10g}" for name in names)
     return f"{numbers}, arm = {model.arm}, path = {model.path}"

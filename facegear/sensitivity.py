@@ -22,7 +22,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from facegear.floquet import AdaptiveMagnus, Method
-from facegear.models import Model, parameter_path, replace_parameter
+from facegear.models import Model, replace_parameter, value_of
 from facegear.parameters import integer_at_least, positive
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import Array, chebyshev_coefficients, chebyshev_points
@@ -141,10 +141,7 @@ def parameter_value(model: Model, speed: float, parameter: str) -> float:
     """Present value of a parameter of a model, or the speed for the name ``"speed"``."""
     if parameter == SPEED:
         return positive("speed", speed, "rad/s")
-    part: Any = model
-    for name in parameter_path(model, parameter):
-        part = getattr(part, name)
-    return float(part)
+    return value_of(model, parameter)
 
 
 def _system(model: Model, speed: float, parameter: str, value: float) -> PeriodicSystem:
