@@ -301,8 +301,8 @@ class OtherCentroid(Transverse):
     @cached_property
     def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
         """Shape vector at the point of the load."""
-        ratio = self.body.drive.contact_ratio if self.contact_ratio is None else self.contact_ratio
-        return (_shape_at(replace(self.body, thickness_ratio=0.04), ratio, self.centroid),)
+        body = replace(self.body, thickness_ratio=0.04)
+        return (_shape_at(body, self.mesh_contact_ratio, self.centroid),)
 
 
 @lru_cache(maxsize=32)

@@ -226,7 +226,7 @@ def _built(found: dict[str, Any]) -> DriveFile:
     body = _by_model("body", lambda: Body(drive, material=material, **found["body"]))
     pinions = dict(found["pinions"])
     angles, clock = pinions.pop("angles"), pinions.pop("contact_ratio")
-    ratio = drive.geometric_contact_ratio if clock == "geometric" else drive.contact_ratio
+    ratio = drive.geometric_contact_ratio if clock == "geometric" else None
     load = _by_model("pinions", lambda: MeshLoad(**pinions))
     transverse = _by_model("pinions", lambda: Transverse(body, load, angles, contact_ratio=ratio))
     requirements = _requirements(found["operation"])
@@ -236,7 +236,7 @@ def _built(found: dict[str, Any]) -> DriveFile:
     return DriveFile(found[NAME.name], transverse, requirements, torsional)
 
 
-def _torsional(drive: Drive, gearbox: dict[str, Any], contact_ratio: float) -> Torsional:
+def _torsional(drive: Drive, gearbox: dict[str, Any], contact_ratio: float | None) -> Torsional:
     values = dict(gearbox)
     arm = values.pop("arm")
     for part in ("mesh", "input", "output"):

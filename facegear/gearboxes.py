@@ -87,7 +87,12 @@ class ProportionalGearbox:
         for name in ("mesh_damping", "input_damping", "output_damping"):
             nonnegative(name, getattr(self, name), "s")
         # Everything else is checked by what it is turned into.
-        object.__setattr__(self, "contact_ratio", self.torsional.box.contact_ratio)
+        _ = self.torsional
+
+    @property
+    def mesh_contact_ratio(self) -> float:
+        """Mesh periods that a tooth pair stays in mesh: `contact_ratio` if given, else Tregold's (3-23 to 3-26)."""
+        return self.gearbox.mesh_contact_ratio
 
     @property
     def gearbox(self) -> Gearbox:

@@ -86,7 +86,20 @@ class SkewStates(NamedTuple):
     slope: FloatArray
 
 
-def _checked_ratio(drive: Drive, contact_ratio: float | None) -> float:
+def checked_contact_ratio(drive: Drive, contact_ratio: float | None) -> float:
+    """Return the contact ratio that a drive is computed with.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float or None
+        Mesh periods that a tooth pair stays in mesh, 1 or more; None for Tregold's, `drive.contact_ratio`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
     ratio = drive.contact_ratio if contact_ratio is None else contact_ratio
     hint = "below 1 there are instants without any tooth in mesh"
     return parameters.within("contact_ratio", ratio, 1.0, float(drive.pinion_teeth), hint=hint)
@@ -136,7 +149,7 @@ class _TimedPairs(ABC, Generic[States]):
     contact_ratio: float = field(default=None)  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "contact_ratio", _checked_ratio(self.drive, self.contact_ratio))
+        object.__setattr__(self, "contact_ratio", checked_contact_ratio(self.drive, self.contact_ratio))
 
     @property
     def pairs(self) -> int:

@@ -109,10 +109,18 @@ def replace_parameter(model: ModelT, name: str, value: float) -> ModelT:
 
 
 def value_of(model: object, name: str) -> float:
-    """Present value of a parameter of a model, named as for :func:`parameter_path`."""
+    """Present value of a parameter of a model, named as for :func:`parameter_path`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        From :func:`parameter_path`, or if the parameter is optional and not given.
+    """
     part: Any = model
     for field in parameter_path(model, name):
         part = getattr(part, field)
+    if part is None:
+        raise ValueError(f"{name} is None, the model's default: give it a number to start from")
     return float(part)
 
 

@@ -252,7 +252,8 @@ def describe(model: ProportionalGearbox) -> str:
         "mesh_damping",
         "input_damping",
         "output_damping",
-        "contact_ratio",
     )
     numbers = ", ".join(f"{name} = {value_of(model, name):.10g}" for name in names)
-    return f"{numbers}, arm = {model.arm}, path = {model.path}"
+    return (
+        f"{numbers}, contact_ratio = {model.mesh_contact_ratio:.10g}, arm = {model.arm}, path = {model.path}"
+    )

@@ -44,9 +44,7 @@ def with_teeth(model: Transverse, pinion_teeth: int) -> Transverse:
             f"pinion_teeth = {pinion_teeth} gives the face gear no whole number of teeth at this gear ratio"
         )
     resized = replace(drive, pinion_teeth=pinion_teeth, gear_teeth=teeth // drive.pinion_teeth)
-    # Tregold's contact ratio is that of the drive; any other was chosen and stays.
-    ratio = None if model.contact_ratio == drive.contact_ratio else model.contact_ratio
-    return replace(model, body=replace(model.body, drive=resized), contact_ratio=ratio)
+    return replace(model, body=replace(model.body, drive=resized))
 
 
 def touching_angle(drive: Drive) -> float:

@@ -47,7 +47,7 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
     Raises
     ------
     ValueError
-        If a value of the model lies outside the range of its control.
+        If a value of the model lies outside the range of its control, or its contact ratio is neither of the two.
     """
     start = cases.FIGURES["4.4a"].model() if model is None else model
     body, drive, load = start.body, start.body.drive, start.load
@@ -58,7 +58,13 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
         # The power control holds at the highest speed: the same force.
         full = rad_per_s(highest_speed_rpm) / drive.gear_ratio
         horsepower = start.power / start.power_speed * full / WATT_PER_HORSEPOWER
-    ratio = TREGOLD if start.contact_ratio == drive.contact_ratio else TRUE_SWEEP
+    clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
+    ratio = next((name for name, value in clocks.items() if value == start.mesh_contact_ratio), None)
+    if ratio is None:
+        raise ValueError(
+            f"contact_ratio of the model must be {clocks[TREGOLD]:.6g} (Tregold) or {clocks[TRUE_SWEEP]:.6g} (true "
+            f"sweep) for these teeth, got {start.mesh_contact_ratio!r}"
+        )
     controls = (
         Quantity("pinion_teeth", "teeth of the pinion", 12, 60, drive.pinion_teeth, 1, whole=True),
         Quantity("gear_teeth", "teeth of the face gear", 40, 260, drive.gear_teeth, 1, whole=True),

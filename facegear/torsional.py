@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.geometry import Drive
-from facegear.kinematics import ContactPath, SkewLine, mesh_period
+from facegear.kinematics import ContactPath, SkewLine, checked_contact_ratio, mesh_period
 from facegear.parameters import (
     STEEL,
     FloatArray,
@@ -150,8 +150,9 @@ class Gearbox:
     input_damping, output_damping : float
         c1, c2 of the shafts [N m s/rad], 0 or greater.
     contact_ratio : float, optional
-        Mesh periods that a tooth pair stays in mesh. Default: Tregold's `drive.contact_ratio`, as printed;
-        `drive.geometric_contact_ratio` is that of the true sweep.
+        Mesh periods that a tooth pair stays in mesh. Default None: Tregold's, as printed, that of whatever `drive`
+        there is (`mesh_contact_ratio`); `drive.geometric_contact_ratio` is that of the true sweep. A number stays
+        when the drive is replaced.
 
     Raises
     ------
@@ -185,10 +186,12 @@ class Gearbox:
         positive("output_stiffness", self.output_stiffness, "N m/rad")
         nonnegative("output_damping", self.output_damping, "N m s/rad")
         # Fails here rather than at the first use if the contact ratio is not valid.
-        skew = (
-            SkewLine(self.drive) if self.contact_ratio is None else SkewLine(self.drive, self.contact_ratio)
-        )
-        object.__setattr__(self, "contact_ratio", skew.contact_ratio)
+        _ = self.mesh_contact_ratio
+
+    @property
+    def mesh_contact_ratio(self) -> float:
+        """Mesh periods that a tooth pair stays in mesh: `contact_ratio` if given, else Tregold's (3-23 to 3-26)."""
+        return checked_contact_ratio(self.drive, self.contact_ratio)
 
     @property
     def mass_matrix(self) -> FloatArray:
@@ -365,8 +368,7 @@ class Torsional:
 
     @property
     def _mesh(self) -> _Mesh:
-        assert self.box.contact_ratio is not None  # set by Gearbox.__post_init__
-        return _Mesh(self.box.drive, self.box.contact_ratio, self.arm, self.path)
+        return _Mesh(self.box.drive, self.box.mesh_contact_ratio, self.arm, self.path)
 
     @property
     def shapes(self) -> tuple[PiecewiseChebyshev, ...]:

@@ -56,7 +56,7 @@ def describe(model: ProportionalGearbox) -> str:
         "cm/km_s": model.mesh_damping,
         "c1/k1_s": model.input_damping,
         "c2/k2_s": model.output_damping,
-        "contact_ratio": model.contact_ratio,
+        "contact_ratio": model.mesh_contact_ratio,
     }
     numbers = ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
     return f"{numbers}, arm = {model.arm}, path = {model.path}"

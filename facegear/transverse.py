@@ -31,7 +31,7 @@ from facegear.disk import (
     unit_shape,
 )
 from facegear.edge_stiffness import Following, driving_force, unit_stiffness
-from facegear.kinematics import ContactPath, mesh_period, phase_split
+from facegear.kinematics import ContactPath, checked_contact_ratio, mesh_period, phase_split
 from facegear.parameters import (
     FloatArray,
     MeshLoad,
@@ -67,12 +67,6 @@ def nominal_pinion_mass(body: Body) -> float:
     """Mass of the pinion as a solid cylinder, ρπr_p²(L2 - L1), the denominator of (4-19) [kg]."""
     drive = body.drive
     return body.material.density * math.pi * drive.pitch_radius**2 * drive.face_width
-
-
-def _path(body: Body, contact_ratio: float | None) -> ContactPath:
-    if contact_ratio is None:
-        return ContactPath(body.drive)
-    return ContactPath(body.drive, contact_ratio)
 
 
 @lru_cache(maxsize=256)
@@ -172,8 +166,9 @@ class Transverse:
         θ_c of each pinion [rad], between -2π and 2π and all different. What is left of an angle after whole
         teeth sets the phase of the pinion's mesh (5-1 to 5-4).
     contact_ratio : float, optional
-        Mesh periods that a tooth pair stays in mesh. Default: Tregold's `drive.contact_ratio`, as printed;
-        `drive.geometric_contact_ratio` is that of the true sweep.
+        Mesh periods that a tooth pair stays in mesh. Default None: Tregold's, as printed, that of whatever drive
+        the body has (`mesh_contact_ratio`); `drive.geometric_contact_ratio` is that of the true sweep. A number
+        stays when the drive is replaced.
     rate : {"frozen", "total"}
         Whether the pinion follows ∂w/∂t at the contact centroid ("frozen", as printed in 4-1) or the deflection
         under the moving centroid ("total").
@@ -229,7 +224,7 @@ class Transverse:
         integer_at_least("stress_harmonics", self.stress_harmonics, 0)
         _ = self.driving_force
         # Fails here rather than at the first use if the contact ratio is not valid.
-        object.__setattr__(self, "contact_ratio", _path(self.body, self.contact_ratio).contact_ratio)
+        _ = self.mesh_contact_ratio
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
         if angles.ndim != 1 or angles.size == 0:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
@@ -240,6 +235,11 @@ class Transverse:
         if gaps.min() < 1e-6:
             raise ValueError(f"pinion_angles must differ from one another, got {self.pinion_angles!r}")
         object.__setattr__(self, "pinion_angles", tuple(angles.tolist()))
+
+    @property
+    def mesh_contact_ratio(self) -> float:
+        """Mesh periods that a tooth pair stays in mesh: `contact_ratio` if given, else Tregold's (3-23 to 3-26)."""
+        return checked_contact_ratio(self.body.drive, self.contact_ratio)
 
     @property
     def bearing_stiffness(self) -> float:
@@ -267,7 +267,7 @@ class Transverse:
     def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
         """Shape vector at each pinion's contact centroid against t/T0 (5-4)."""
         drive = self.body.drive
-        first = contact_shape(self.body.modes, _path(self.body, self.contact_ratio))
+        first = contact_shape(self.body.modes, ContactPath(drive, self.mesh_contact_ratio))
         phases = phase_split(drive, self.pinion_angles).phase
         shapes = (
             rotated(self.body, first, angle).shift(phase)

@@ -42,7 +42,7 @@ def describe(model: Transverse) -> str:
         "stiffness": load.stiffness,
         "damping_s": load.damping,
         "mass": load.mass,
-        "contact_ratio": model.contact_ratio,
+        "contact_ratio": model.mesh_contact_ratio,
     }
     numbers = ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
     return f"{numbers}, pinion_angles_deg = {angles}, rate = {model.rate}, travel = {model.travel}"

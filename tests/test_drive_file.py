@@ -64,7 +64,7 @@ def test_gearbox_is_that_of_chapter_7():
             assert getattr(box, f"{name}_{part}") == pytest.approx(
                 getattr(printed, f"{name}_{part}"), rel=1e-8
             )
-    assert box.contact_ratio == printed.contact_ratio
+    assert box.mesh_contact_ratio == printed.mesh_contact_ratio == box.drive.contact_ratio
 
 
 def test_shafts_at_85_degrees():

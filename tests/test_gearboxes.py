@@ -93,7 +93,9 @@ def test_a_map_takes_the_model():
 def test_options_reach_the_model():
     model = FIGURES["7.13a"].model(arm="conjugate", path="centroid", contact_ratio=1.4)
     assert (model.torsional.arm, model.torsional.path) == ("conjugate", "centroid")
-    assert model.torsional.box.contact_ratio == 1.4
+    assert model.torsional.box.contact_ratio == model.mesh_contact_ratio == 1.4
+    assert FIGURES["7.13a"].model().contact_ratio is None
+    assert FIGURES["7.13a"].model().mesh_contact_ratio == DRIVE.contact_ratio
 
 
 @pytest.mark.parametrize("name", ["gear_inertia", "load_inertia", "input_stiffness", "output_stiffness"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from facegear.geometry import Drive
-from facegear.models import is_whole_number, parameter_names, parameter_path, replace_parameter
+from facegear.models import is_whole_number, parameter_names, parameter_path, replace_parameter, value_of
 from facegear.parameters import MeshLoad
 from facegear.periodic import PeriodicSystem
 from facegear.plate import Body
@@ -73,6 +73,13 @@ def test_counted_parameters_take_whole_numbers():
     assert isinstance(replace_parameter(PAIR, "teeth", 24.0).teeth, int)
     with pytest.raises(TypeError, match="pinion_teeth"):
         replace_parameter(TRANSVERSE, "pinion_teeth", 26.5)
+
+
+def test_present_value():
+    assert value_of(TRANSVERSE, "pinion_teeth") == 26.0
+    with pytest.raises(ValueError, match=r"contact_ratio is None, the model's default"):
+        value_of(TRANSVERSE, "contact_ratio")
+    assert value_of(replace_parameter(TRANSVERSE, "contact_ratio", 2.0), "contact_ratio") == 2.0
 
 
 def test_unknown_parameters_are_answered_with_those_that_exist():

@@ -273,6 +273,8 @@ class TestRefusals:
 
     def test_parameter_that_moves_the_contact(self):
         with pytest.raises(ValueError, match="shape vectors of the loads depend on contact_ratio"):
+            sensitivity(replace_parameter(torsional(), "contact_ratio", 1.5), 60.0, ("contact_ratio",))
+        with pytest.raises(ValueError, match="contact_ratio is None"):
             sensitivity(torsional(), 60.0, ("contact_ratio",))
 
     def test_unknown_parameter(self):

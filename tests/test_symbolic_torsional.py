@@ -74,7 +74,7 @@ def test_fourier_coefficients_against_exact_integration(name):
         drive.pressure_angle,
         drive.inner_radius,
         drive.outer_radius,
-        box.contact_ratio,
+        box.mesh_contact_ratio,
         box.mesh_stiffness,
         box.mesh_damping,
         box.input_stiffness,

@@ -1,7 +1,7 @@
 """The torsional model against its printed numbers, an independent integrator and the physics it stands for."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Chebyshev
 
-from facegear.floquet import AdaptiveMagnus, error_estimate, multipliers, transition_matrix
+from facegear.floquet import AdaptiveMagnus, error_estimate, growth_rate, multipliers, transition_matrix
 from facegear.gearboxes import DRIVE, FIGURES, GEAR_INERTIA, PINION_INERTIA
 from facegear.kinematics import ContactPath
+from facegear.maps import stability_map
 from facegear.parameters import rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.torsional import (
@@ -57,7 +58,7 @@ def test_printed_inertias():
 
 def test_mean_stiffness_is_the_closed_form():
     # ∫ over cr periods of φφᵀ with r falling linearly from R2 to R1
-    r1, r2, rb, cr = DRIVE.inner_radius, DRIVE.outer_radius, DRIVE.base_radius, BOX.contact_ratio
+    r1, r2, rb, cr = DRIVE.inner_radius, DRIVE.outer_radius, DRIVE.base_radius, BOX.mesh_contact_ratio
     cosine = math.cos(DRIVE.pressure_angle)
     first, second = (r1 + r2) / 2, (r1**2 + r1 * r2 + r2**2) / 3
     mesh = np.array(
@@ -136,7 +137,7 @@ def test_skew_line_starts_outside_and_leaves_inside():
     young, old = Torsional(BOX).shapes
     cosine = math.cos(DRIVE.pressure_angle)
     assert young(0.0)[1] == pytest.approx(-DRIVE.outer_radius * cosine, rel=1e-12)
-    leaving = BOX.contact_ratio - 1
+    leaving = BOX.mesh_contact_ratio - 1
     assert old(leaving, "left")[1] == pytest.approx(-DRIVE.inner_radius * cosine, rel=1e-12)
     assert not old(leaving + 0.01).any()
     assert young(leaving + 0.01)[0] == DRIVE.base_radius
@@ -219,6 +220,22 @@ def test_monodromy_of_the_truth_has_unit_determinant_without_damping():
 def test_bad_gearbox(change, message):
     with pytest.raises(ValueError, match=message):
         replace(BOX, **change)
+
+
+def test_map_over_teeth_is_that_of_gearboxes_built_anew():
+    teeth, speeds = (29, 31, 33), [33.0, 67.0]
+    chart = stability_map(Torsional(BOX), speeds, "pinion_teeth", teeth, jobs=1, progress=False)
+    for row, count in zip(chart.values, teeth, strict=True):
+        given = {
+            field.name: getattr(BOX, field.name) for field in fields(BOX) if field.name != "contact_ratio"
+        }
+        anew = Torsional(Gearbox(**given | {"drive": replace(DRIVE, pinion_teeth=count)}))
+        assert anew.box.mesh_contact_ratio == anew.box.drive.contact_ratio
+        assert row == pytest.approx([growth_rate(anew.system(speed)) for speed in speeds], abs=1e-6)
+    # With the first drive's contact ratio at every count, as it once was, the map is another one.
+    kept = Torsional(replace(BOX, contact_ratio=DRIVE.contact_ratio))
+    wrong = stability_map(kept, speeds, "pinion_teeth", teeth, jobs=1, progress=False)
+    assert np.abs(wrong.values - chart.values).max() > 1e-3
 
 
 def test_wrong_kinds():

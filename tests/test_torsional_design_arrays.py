@@ -111,8 +111,8 @@ def test_softer_pairs_keep_shafts_and_mean_mesh_stiffness():
     plain, soft = models["as printed"].gearbox, models["the same, softer pairs"].gearbox
     assert soft.input_stiffness == pytest.approx(plain.input_stiffness, rel=1e-14)
     assert soft.output_stiffness == pytest.approx(plain.output_stiffness, rel=1e-14)
-    assert soft.mesh_stiffness * soft.contact_ratio == pytest.approx(
-        plain.mesh_stiffness * plain.contact_ratio, rel=1e-14
+    assert soft.mesh_stiffness * soft.mesh_contact_ratio == pytest.approx(
+        plain.mesh_stiffness * plain.mesh_contact_ratio, rel=1e-14
     )
 
 

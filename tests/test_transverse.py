@@ -13,8 +13,11 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import linear_sum_assignment
 
 from facegear import floquet
+from facegear.floquet import growth_rate
 from facegear.geometry import Drive
 from facegear.kinematics import ContactPath, phase_split
+from facegear.maps import stability_map
+from facegear.models import replace_parameter
 from facegear.parameters import MeshLoad, rad_per_s
 from facegear.plate import Body
 from facegear.symbolic import galerkin
@@ -203,7 +206,7 @@ def model(stiffness=1.0, damping=3e-6, mass=1.0, body=CASE_ONE, **options) -> Tr
 def complex_pinions(transverse: Transverse) -> list[Pinion]:
     """Centroids of the pinions by (5-1) to (5-4), straight from the contact path."""
     drive = transverse.body.drive
-    path = ContactPath(drive, transverse.contact_ratio)
+    path = ContactPath(drive, transverse.mesh_contact_ratio)
     sense = {"printed": 1, "with_disk": -1}[transverse.travel]
     pinions = []
     for angle in transverse.pinion_angles:
@@ -315,9 +318,31 @@ class TestTransverse:
 
     def test_tregold_is_the_default(self):
         drive = CASE_ONE.drive
-        assert model() == model(contact_ratio=drive.contact_ratio)
-        assert model().contact_ratio == pytest.approx(1.5532, abs=5e-5)
-        assert model() != model(contact_ratio=drive.geometric_contact_ratio)
+        assert model().contact_ratio is None
+        assert model().mesh_contact_ratio == drive.contact_ratio == pytest.approx(1.5532, abs=5e-5)
+        same, other = (model(contact_ratio=r) for r in (drive.contact_ratio, drive.geometric_contact_ratio))
+        assert same.mesh_contact_ratio == model().mesh_contact_ratio != other.mesh_contact_ratio
+        for one, two in zip(model().shapes, same.shapes, strict=True):
+            np.testing.assert_array_equal(one.coefficients, two.coefficients)
+
+    def test_contact_ratio_follows_the_teeth_unless_it_was_given(self):
+        for teeth in (25, 28):
+            changed = replace_parameter(model(), "pinion_teeth", teeth)
+            drive = replace(CASE_ONE.drive, pinion_teeth=teeth)
+            assert changed == model(body=replace(CASE_ONE, drive=drive))
+            assert changed.mesh_contact_ratio == drive.contact_ratio != model().mesh_contact_ratio
+        assert replace_parameter(model(contact_ratio=2.0), "pinion_teeth", 28).mesh_contact_ratio == 2.0
+
+    def test_map_over_teeth_is_that_of_models_built_anew(self):
+        teeth, speeds = (24, 26, 30), [48.0, 55.0, 61.0]
+        chart = stability_map(model(), speeds, "pinion_teeth", teeth, jobs=1, progress=False)
+        for row, count in zip(chart.values, teeth, strict=True):
+            anew = model(body=Body(replace(CASE_ONE.drive, pinion_teeth=count), thickness_ratio=0.03))
+            np.testing.assert_allclose(row, [growth_rate(anew.system(s)) for s in speeds], atol=1e-5)
+        # With the first drive's contact ratio at every count, as it once was, the map is another one.
+        kept = model(contact_ratio=CASE_ONE.drive.contact_ratio)
+        wrong = stability_map(kept, speeds, "pinion_teeth", teeth, jobs=1, progress=False)
+        assert np.abs(wrong.values - chart.values).max() > 0.1
 
     def test_static_load_on_the_still_disk(self):
         """A pinion spring in parallel with the disk adds its stiffness to k_d at the contact point."""

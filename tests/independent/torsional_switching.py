@@ -51,7 +51,7 @@ def numbers_of(box):
         R1=drive.inner_radius,
         R2=drive.outer_radius,
         alpha_c=drive.pressure_angle,
-        cr=box.contact_ratio,
+        cr=box.mesh_contact_ratio,
         N2=drive.gear_teeth,
     )
 
