@@ -8,10 +8,11 @@ entries are interpolated, with more points until the last coefficients vanish.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from facegear.collocation import FreeMotion, UnsuitableSystemError
 from facegear.floquet import AdaptiveMagnus, Method, transition_matrices
@@ -19,10 +20,22 @@ from facegear.parameters import finite_array
 from facegear.periodic import LoadColumn, PeriodicSystem
 from facegear.piecewise import Array
 
+ComplexArray = NDArray[np.complex128]
+
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
 #: General route of columns; what it estimates is the error before its last extrapolation.
 GENERAL_ROUTE = AdaptiveMagnus(1e-9)
+# Degree of the first Chebyshev series that is tried.
+_LOWEST_DEGREE = 8
+# Eigenvalues are dropped where all of them are smaller than all that are kept by this factor at least.
+_APART = 0.97
+# Largest part of the eigenvalues that are kept: dropping fewer saves nothing.
+_LARGEST_BLOCK = 0.75
+# A block is followed at no more points than this part of those where it is wanted: eigenvectors cost time too.
+_WORTHWHILE = 0.2
+# Condition number of eigenvectors from which on what they span is not known well enough.
+_DEPENDENT = 1e6
 
 
 def column_spectral_radii(
@@ -55,7 +68,29 @@ def column_spectral_radii(
         Naming the parameter, if shapes do not match or values are negative or not finite.
     """
     column = _load_column(len(system.loads), masses, dampings, stiffnesses)
-    return _spectral_radii(column_transition_matrices(system, column, method))
+    evaluate: Callable[[LoadColumn], Array]
+    mobility = 1.0
+    if method is None:
+        try:
+            motion = FreeMotion(system, column)
+        except UnsuitableSystemError:
+            method = GENERAL_ROUTE
+        else:
+            evaluate = motion.transition_matrices
+            mobility = float(motion.mobility.max(initial=0.0))
+    if method is not None:
+
+        def evaluate(part: LoadColumn) -> Array:
+            systems = [
+                system.replace_loads(mass=m, damping=c, stiffness=k)
+                for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
+            ]
+            return transition_matrices(systems, method)
+
+    line = _StraightLine.through(column, mobility)
+    if line is None:
+        return _spectral_radii(evaluate(column))
+    return interpolated_spectral_radii(lambda t: evaluate(line.column(t)), line.variable)
 
 
 def family_spectral_radii(
@@ -85,46 +120,7 @@ def family_spectral_radii(
     def evaluate(part: Array) -> Array:
         return transition_matrices([system_at(float(value)) for value in part], chosen)
 
-    return _spectral_radii(interpolate(evaluate, points, TOLERANCE))
-
-
-def column_transition_matrices(
-    system: PeriodicSystem, column: LoadColumn, method: Method | None = None
-) -> Array:
-    """Transition matrices along a column, in coordinates that are fixed along it.
-
-    Returns
-    -------
-    array, shape (V, 2n, 2n)
-        Similar to the transition matrices of the state (q, q̇): the same eigenvalues.
-    """
-    evaluate: Callable[[LoadColumn], Array]
-    mobility = 1.0
-    if method is None:
-        try:
-            motion = FreeMotion(system, column)
-        except UnsuitableSystemError:
-            method = GENERAL_ROUTE
-        else:
-            evaluate = motion.transition_matrices
-            mobility = float(motion.mobility.max(initial=0.0))
-    if method is not None:
-
-        def evaluate(part: LoadColumn) -> Array:
-            systems = [
-                system.replace_loads(mass=m, damping=c, stiffness=k)
-                for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
-            ]
-            return transition_matrices(systems, method)
-
-    line = _StraightLine.through(column, mobility)
-    if line is None:
-        return evaluate(column)
-    return interpolate(lambda t: evaluate(line.column(t)), line.variable, TOLERANCE)
-
-
-def _spectral_radii(matrices: Array) -> Array:
-    return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
+    return interpolated_spectral_radii(evaluate, points)
 
 
 def _load_column(loads: int, masses: ArrayLike, dampings: ArrayLike, stiffnesses: ArrayLike) -> LoadColumn:
@@ -188,8 +184,14 @@ class _StraightLine:
         return LoadColumn.from_stacked(self.start + s[:, None] * (self.end - self.start))
 
 
-def interpolate(evaluate: Callable[[Array], Array], points: Array, tolerance: float) -> Array:
-    """Evaluate an analytic matrix function of one variable at many points by Chebyshev interpolation.
+def interpolated_spectral_radii(
+    evaluate: Callable[[Array], Array], points: Array, tolerance: float = TOLERANCE
+) -> Array:
+    """Largest modulus of the eigenvalues of an analytic matrix function of one variable at many points.
+
+    The matrices are evaluated at Chebyshev points of the variable and interpolated. Where some of their eigenvalues
+    are smaller than all others throughout (modes that decay fast), the block of the larger ones is interpolated
+    instead, which has the same largest eigenvalue and fewer others.
 
     Parameters
     ----------
@@ -201,30 +203,146 @@ def interpolate(evaluate: Callable[[Array], Array], points: Array, tolerance: fl
 
     Returns
     -------
-    array, shape (V, d, d)
-        Evaluated point by point instead, if that takes no more evaluations.
+    array, shape (V,)
+        From matrices evaluated point by point, if interpolation takes as many evaluations.
     """
-    low, high = float(points.min()), float(points.max())
-    middle, half = (low + high) / 2.0, (high - low) / 2.0
-    degree = 8
-    if degree + 1 >= points.size or half == 0.0:
-        return evaluate(points)
-    values = evaluate(middle + half * np.cos(np.pi * np.arange(degree + 1) / degree))
+    series = _Series.resolved(evaluate, points, tolerance)
+    if series is None:
+        return _spectral_radii(evaluate(points))
+    block = None
+    # Where the matrix itself bends much, the subspace of its leading eigenvalues bends more than pays.
+    if series.degree == _LOWEST_DEGREE:
+        block = _leading_block(series, tolerance, int(_WORTHWHILE * points.size))
+    return _spectral_radii((series if block is None else block)(points))
+
+
+def _spectral_radii(matrices: Array) -> Array:
+    return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
+
+
+@dataclass(frozen=True, eq=False)
+class _Series:
+    """A matrix function on [low, high] by its values, (K + 1, d, d), at the points cos(π j/K) of the interval."""
+
+    low: float
+    high: float
+    values: Array
+
+    @classmethod
+    def resolved(cls, evaluate: Callable[[Array], Array], points: Array, tolerance: float) -> _Series | None:
+        """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
+        low, high = float(points.min()), float(points.max())
+        degree = _LOWEST_DEGREE
+        if degree + 1 >= points.size or low == high:
+            return None
+        nodes = np.cos(np.pi * np.arange(degree + 1) / degree)
+        series = cls(low, high, evaluate((low + high) / 2.0 + (high - low) / 2.0 * nodes))
+        while series.tail > tolerance:
+            if 2 * series.degree + 1 >= points.size:
+                return None
+            series = cls(low, high, _interleaved(series.values, evaluate(series.between)))
+        return series
+
+    @property
+    def degree(self) -> int:
+        """Degree K."""
+        return int(self.values.shape[0]) - 1
+
+    @property
+    def between(self) -> Array:
+        """Points that the rule of twice the degree adds, shape (K,)."""
+        nodes = np.cos(np.pi * (np.arange(self.degree) + 0.5) / self.degree)
+        return (self.low + self.high) / 2.0 + (self.high - self.low) / 2.0 * nodes
+
+    @cached_property
+    def coefficients(self) -> Array:
+        """Chebyshev coefficients, (K + 1, d, d)."""
+        return _lobatto_coefficients(self.values)
+
+    @property
+    def tail(self) -> float:
+        """Size of the last two coefficients relative to the largest entry or 1: one can be small by accident."""
+        last = float(np.abs(self.coefficients[-2:]).max())
+        return last / max(float(np.abs(self.values).max()), 1.0)
+
+    def tail_at(self, degree: int) -> float:
+        """Tail of a series of higher degree, if coefficients go on to fall as they do in the upper half of this one."""
+        sizes = np.abs(self.coefficients).max(axis=(1, 2))
+        middle = self.degree // 2
+        fall = float(sizes[-2:].max() / sizes[middle - 1 : middle + 1].max())
+        exponent: float = (degree - self.degree) / (self.degree - middle)
+        return float(self.tail * fall**exponent)
+
+    def __call__(self, points: Array) -> Array:
+        """Interpolate at points (V,), shape (V, d, d)."""
+        local = (points - (self.low + self.high) / 2.0) / ((self.high - self.low) / 2.0)
+        basis = np.polynomial.chebyshev.chebvander(np.clip(local, -1.0, 1.0), self.degree)
+        return np.tensordot(basis, self.coefficients, axes=1)
+
+
+def _interleaved(coarse: Array, between: Array) -> Array:
+    """Values at the points of the finer rule from those of the coarser, (K + 1, ...), and the (K, ...) between."""
+    finer = np.empty((coarse.shape[0] + between.shape[0], *coarse.shape[1:]), coarse.dtype)
+    finer[0::2], finer[1::2] = coarse, between
+    return finer
+
+
+def _leading_block(series: _Series, tolerance: float, most: int) -> _Series | None:
+    """Blocks with the eigenvalues of largest modulus, r of them, as a series of (r, r) matrices.
+
+    In fixed coordinates (y, z) the invariant subspace of the r largest eigenvalues is z = X y, and the matrix acts on
+    it as Φ_yy + Φ_yz X, which is smooth along the parameter while these eigenvalues stay apart from the others. None
+    if they do not, are nearly all, or would take a degree above `most` to follow.
+    """
+    moduli, vectors = _ordered_eigenvectors(series.values)
     while True:
-        coefficients = _lobatto_coefficients(values)
-        sizes = np.abs(coefficients).max(axis=(1, 2))
-        # Two coefficients, in case one is small by accident.
-        if sizes[-2:].max() <= tolerance * max(float(np.abs(values).max()), 1.0):
-            break
-        if 2 * degree + 1 >= points.size:
-            return evaluate(points)
-        # The points of half the spacing contain the present ones.
-        between = evaluate(middle + half * np.cos(np.pi * (np.arange(degree) + 0.5) / degree))
-        finer = np.empty((2 * degree + 1, *values.shape[1:]))
-        finer[0::2], finer[1::2] = values, between
-        values, degree = finer, 2 * degree
-    basis = np.polynomial.chebyshev.chebvander(np.clip((points - middle) / half, -1.0, 1.0), degree)
-    return np.tensordot(basis, coefficients, axes=1)
+        count = _count_apart(moduli)
+        blocks = None if count is None else _blocks(series.values, vectors[:, :, :count])
+        if blocks is None:
+            return None
+        block = replace(series, values=blocks)
+        if block.tail <= tolerance:
+            return block
+        if 2 * block.degree > most or block.tail_at(most) > tolerance:
+            return None
+        between = series(series.between)
+        more_moduli, more_vectors = _ordered_eigenvectors(between)
+        moduli = _interleaved(moduli, more_moduli)
+        vectors = _interleaved(vectors.view(float), more_vectors.view(float)).view(complex)
+        series = replace(series, values=_interleaved(series.values, between))
+
+
+def _ordered_eigenvectors(matrices: Array) -> tuple[Array, ComplexArray]:
+    """Moduli of eigenvalues, (K, d), descending, and their vectors, (K, d, d)."""
+    eigenvalues, vectors = np.linalg.eig(matrices)
+    order = np.argsort(-np.abs(eigenvalues), axis=-1, kind="stable")
+    moduli = np.take_along_axis(np.abs(eigenvalues), order, axis=-1)
+    return moduli, np.take_along_axis(vectors, order[:, None, :], axis=-1).astype(complex)
+
+
+def _count_apart(moduli: Array) -> int | None:
+    """How many eigenvalues are larger than the others by the largest factor, from moduli (K, d), descending."""
+    counts = np.arange(1, int(_LARGEST_BLOCK * moduli.shape[1]) + 1)
+    if counts.size == 0:
+        return None
+    larger, smaller = moduli[:, counts - 1], moduli[:, counts]
+    ratios = np.divide(smaller, larger, out=np.ones_like(smaller), where=larger > 0.0).max(axis=0)
+    return int(counts[ratios.argmin()]) if ratios.min() <= _APART else None
+
+
+def _blocks(matrices: Array, vectors: ComplexArray) -> Array | None:
+    """Blocks of matrices (K, d, d) on the spans of their vectors (K, d, r), or None if these are close to dependent."""
+    count = vectors.shape[-1]
+    # Orthonormal coordinates, the first r of which span the subspace of the middle matrix: vectors of a conjugate
+    # pair span the same as their real and imaginary parts.
+    middle = vectors[matrices.shape[0] // 2]
+    basis = np.linalg.svd(np.concatenate([middle.real, middle.imag], axis=1))[0]
+    turned = basis.T @ vectors
+    if np.linalg.cond(turned[:, :count]).max() > _DEPENDENT:
+        return None
+    graph = (turned[:, count:] @ np.linalg.inv(turned[:, :count])).real
+    first = basis[:, :count].T @ matrices
+    return np.asarray(first @ (basis[:, :count] + basis[:, count:] @ graph), dtype=float)
 
 
 def _lobatto_coefficients(values: Array) -> Array:

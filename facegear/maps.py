@@ -23,7 +23,7 @@ import xarray
 from numpy.typing import ArrayLike
 
 from facegear.collocation import UnsuitableSystemError
-from facegear.columns import GENERAL_ROUTE, TOLERANCE, column_spectral_radii, interpolate
+from facegear.columns import GENERAL_ROUTE, column_spectral_radii, interpolated_spectral_radii
 from facegear.floquet import (
     Collocation,
     Method,
@@ -342,7 +342,7 @@ def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: Arr
         matrices = transition_matrices([sweep.model_at(v).system(speed) for v in chosen.tolist()], method)
         return np.asarray(scale @ matrices @ np.linalg.inv(scale), dtype=float)
 
-    radii = np.abs(np.linalg.eigvals(interpolate(evaluate, values, TOLERANCE))).max(axis=-1)
+    radii = interpolated_spectral_radii(evaluate, values)
     # Smooth to the samples is not yet smooth: one cell between them tells.
     witness = int(0.382 * values.size)
     if (
@@ -350,7 +350,7 @@ def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: Arr
         > _INTERPOLATION_CHECK
     ):
         return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
-    return np.asarray(radii, dtype=float)
+    return radii
 
 
 def _same_layout(one: PeriodicSystem, other: PeriodicSystem) -> bool:

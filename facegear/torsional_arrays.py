@@ -16,7 +16,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from facegear.columns import TOLERANCE, interpolate
+from facegear.columns import interpolated_spectral_radii
 from facegear.floquet import transition_matrices
 from facegear.gearboxes import HIGHEST_SPEED_RPM, ProportionalGearbox, TorsionalFigure
 from facegear.hsu import SpeedBand, band_speeds
@@ -207,7 +207,7 @@ def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
             found[part] = transition_matrices(systems, METHOD)
         return np.asarray(scale @ found @ inverse, dtype=float)
 
-    radii = np.abs(np.linalg.eigvals(interpolate(matrices, 1.0 / speeds, TOLERANCE))).max(axis=-1)
+    radii = interpolated_spectral_radii(matrices, 1.0 / speeds)
     return np.asarray(np.log(radii) * speeds * model.gearbox.drive.gear_teeth / (2 * np.pi), dtype=float)
 
 

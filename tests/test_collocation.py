@@ -24,7 +24,7 @@ from benchmarks.synthetic_disk import (
     synthetic_shafts,
 )
 from facegear.collocation import FreeModes, UnsuitableSystemError, chain, transition_matrices
-from facegear.columns import column_spectral_radii, family_spectral_radii, interpolate
+from facegear.columns import column_spectral_radii, family_spectral_radii, interpolated_spectral_radii
 from facegear.floquet import AdaptiveMagnus, Collocation, multipliers, spectral_radii
 from facegear.periodic import LoadColumn, PeriodicSystem
 
@@ -194,15 +194,21 @@ def test_chain_is_the_ordered_product(count, size, seed):
     assert chain(steps)[1] == pytest.approx(expected, abs=1e-9)
 
 
+def largest_modulus(matrices):
+    return np.abs(np.linalg.eigvals(matrices)).max(axis=-1)
+
+
 @given(frequency=st.floats(0.1, 40.0), count=st.integers(2, 120))
 @settings(max_examples=30)
 def test_interpolation_meets_its_tolerance_or_evaluates_everything(frequency, count):
     def evaluate(x):
         wave = frequency * x
-        return np.stack([np.stack([np.cos(wave), np.sin(wave)], -1), np.stack([np.exp(-x), x], -1)], -2)
+        return np.stack([np.stack([2.0 + np.cos(wave), 0.3 * np.sin(wave)], -1), np.stack([x, x], -1)], -2)
 
     points = np.linspace(-1.0, 2.0, count) ** 3
-    assert np.abs(interpolate(evaluate, points, 1e-10) - evaluate(points)).max() < 1e-9
+    assert (
+        np.abs(interpolated_spectral_radii(evaluate, points) - largest_modulus(evaluate(points))).max() < 1e-9
+    )
 
 
 def test_interpolation_evaluates_few_points_of_a_long_column():
@@ -212,8 +218,65 @@ def test_interpolation_evaluates_few_points_of_a_long_column():
         asked.append(x.size)
         return np.cos(x)[:, None, None]
 
-    interpolate(evaluate, np.linspace(0.0, 1.0, 500), 1e-10)
+    interpolated_spectral_radii(evaluate, np.linspace(0.0, 1.0, 500))
     assert sum(asked) <= 17
+
+
+@given(
+    seed=st.integers(0, 2**16),
+    decay=st.floats(0.0, 1.05),
+    bend=st.floats(0.0, 2.0),
+    leading=st.integers(1, 5),
+)
+@settings(max_examples=60)
+def test_decaying_modes_change_no_spectral_radius(seed, decay, bend, leading):
+    """Six modes of modulus near 1 or `decay`, coupled along the parameter: with a gap, with none, dead or growing."""
+    rng = np.random.default_rng(seed)
+    start = np.diag(np.where(np.arange(6) < leading, 1.0, decay)) + 0.02 * rng.standard_normal((6, 6))
+    change = 0.05 * bend * rng.standard_normal((2, 6, 6))
+
+    def evaluate(x):
+        return start + x[:, None, None] * change[0] + (x**2)[:, None, None] * change[1]
+
+    points = np.linspace(-1.0, 1.0, 200)
+    # Where two eigenvalues coincide an error of the matrix moves them by its square root.
+    assert (
+        np.abs(interpolated_spectral_radii(evaluate, points) - largest_modulus(evaluate(points))).max() < 1e-6
+    )
+
+
+def test_only_the_leading_block_is_interpolated_where_the_others_decay(monkeypatch):
+    rng = np.random.default_rng(1)
+    change = 0.02 * rng.standard_normal((6, 6))
+    start = np.diag([1.0, 0.98, 0.96, 0.3, 0.2, 0.0])
+    sizes = []
+    eigenvalues = np.linalg.eigvals
+
+    def recorded(matrices):
+        sizes.append(matrices.shape)
+        return eigenvalues(matrices)
+
+    points = np.linspace(0.0, 1.0, 300)
+    matrices = start + points[:, None, None] * change
+    with monkeypatch.context() as patch:
+        patch.setattr(np.linalg, "eigvals", recorded)
+        radii = interpolated_spectral_radii(lambda x: start + x[:, None, None] * change, points)
+    assert sizes == [(300, 3, 3)]
+    assert np.abs(radii - largest_modulus(matrices)).max() < 1e-10
+
+
+def test_a_rigid_body_motion_is_not_cut_in_two():
+    """Two multipliers of 1 with one vector: the span of their vectors is not known."""
+
+    def evaluate(x):
+        matrices = np.zeros((x.size, 6, 6))
+        matrices[:, np.arange(6), np.arange(6)] = [1.0, 1.0, 0.4, 0.3, 0.2, 0.1]
+        matrices[:, 0, 1] = 1.0 + x
+        matrices[:, 2:, :2] = 0.1 * x[:, None, None]
+        return matrices
+
+    points = np.linspace(0.0, 1.0, 100)
+    assert np.abs(interpolated_spectral_radii(evaluate, points) - 1.0).max() < 1e-7
 
 
 @pytest.mark.parametrize(
