@@ -21,8 +21,12 @@ def main() -> None:
     marks = [(time.perf_counter(), processor_seconds())]
 
     import numpy as np
+    import xarray
 
     import facegear as fg
+
+    # xarray imports Dask, where that is installed, with its first array.
+    xarray.DataArray(0.0)
 
     drive = fg.Drive(26, 130, 3.175e-3)
     pinion = fg.MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0)
