@@ -126,7 +126,9 @@ def flutter(file: DriveFile) -> tuple[Row, ...]:
 
 def describe(file: DriveFile) -> str:
     """Parameters of a drive file as text, for the provenance of arrays."""
-    return f"{file.name}: {file.transverse}, {file.torsional}"
+    # The contact ratio in use besides the field: None there is that of the drive.
+    ratio = file.transverse.mesh_contact_ratio
+    return f"{file.name}: {file.transverse}, {file.torsional}, mesh_contact_ratio = {ratio:.10g}"
 
 
 # --- tongues and what lies between them -------------------------------------------------------------------------
