@@ -142,6 +142,14 @@ def gauss_rule(nodes: int) -> tuple[Array, Array, Array]:
     return (x + 1.0) / 2.0, weights / 2.0, integrals @ coefficients / 2.0
 
 
+@lru_cache(maxsize=16)
+def _last_coefficients(nodes: int) -> Array:
+    """Matrix from values at Gauss nodes to the last two Legendre coefficients, shape (2, nodes)."""
+    x, weights, _ = gauss_rule(nodes)
+    last = np.polynomial.legendre.legvander(2.0 * x - 1.0, nodes - 1)[:, -2:]
+    return np.asarray((last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T, dtype=float)
+
+
 def panel_edges(breakpoints: Array, angle: float, panel_angle: float) -> Array:
     """Return ends of panels: all breakpoints, and points between for a fastest motion of `angle` a period."""
     ends = np.append(breakpoints[1:], 1.0)
@@ -213,7 +221,7 @@ def _build(system: PeriodicSystem, modes: FreeModes, nodes: int, edges: Array) -
     kernel = _split(rows) @ np.concatenate([columns.real, columns.imag], axis=-1).swapaxes(-1, -2)
     window = np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
     force_on_force = kernel * (h[:, None, None] * window)
-    direct = phi @ np.linalg.solve(system.mass, weighted.swapaxes(-1, -2))
+    direct = phi @ (np.linalg.inv(system.mass) @ weighted.swapaxes(-1, -2))
     blocks = force_on_force[2].reshape(count, nodes, p, nodes, p)
     blocks[:, np.arange(nodes), :, np.arange(nodes), :] += direct.swapaxes(0, 1)
 
@@ -287,9 +295,7 @@ class FreeMotion:
         The state at the end of a panel converges twice as fast as the force along it: if the last Legendre
         coefficients of the force are ε of its size, ε² is left of its effect.
         """
-        x, weights, _ = gauss_rule(nodes)
-        last = np.polynomial.legendre.legvander(2.0 * x - 1.0, nodes - 1)[:, -2:]
-        tail = (last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T
+        tail = _last_coefficients(nodes)
         for _ in range(_MOST_HALVINGS):
             force = self._forces(column)
             shape = (*force.shape[:2], nodes, -1, force.shape[-1])

@@ -177,8 +177,14 @@ class _Sweep:
     method: Method | None
 
     def model_at(self, value: float) -> Any:
-        """Return the model with the parameter replaced."""
-        return replace_at(self.model, self.path, value)
+        """Return the model with the parameter replaced; the same one each time, for columns share their values."""
+        if value not in self._built:
+            self._built[value] = replace_at(self.model, self.path, value)
+        return self._built[value]
+
+    @cached_property
+    def _built(self) -> dict[float, Any]:
+        return {}
 
     @cached_property
     def path(self) -> tuple[str, ...]:
