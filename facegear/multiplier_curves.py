@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -25,10 +26,76 @@ ComplexArray = NDArray[np.complex128]
 
 # Size of the last Chebyshev coefficients relative to the largest entry or 1.
 _TOLERANCE = 1e-11
-# A window spans so much of the fastest angle ω T0 [rad] to begin with, and is cut in two if the degree is not enough.
-_WINDOW_ANGLE = 36.0
-_DEGREES = (16, 32, 64)
+# A window spans so much of the fastest live angle [rad] to begin with, and is cut in two if the degree is not enough.
+_WINDOW_ANGLE = 200.0
+_LOWEST_DEGREE = 8
+# Degree of the series from which the degree is read that motions need: far above what a window's angle asks for.
+_LONGEST = 256
+_DOUBLINGS = 2
 _MOST_CUTS = 12
+# A motion that decays by e⁻³⁰ = 1e-13 in a period leaves nothing in the transition matrix.
+_DEAD = 30.0
+# Slowness of systems computed together differs by this factor at most: they share panels or sub-intervals.
+_TOGETHER = 1.4
+
+
+@dataclass(frozen=True, eq=False)
+class FrozenMotions:
+    """Motions e^{λ T0} of a model frozen at some instants, as functions of slowness 1/speed.
+
+    Attributes
+    ----------
+    low, high : float
+        Range of slowness.
+    exponents : complex array, shape (m,)
+        λ T0 over slowness.
+    """
+
+    low: float
+    high: float
+    exponents: ComplexArray
+
+    @classmethod
+    def of(cls, model: Model, low: float, high: float) -> FrozenMotions:
+        """Freeze a model in the middle of its smooth pieces, at both ends of a range of slowness."""
+        found = []
+        for slowness in (low, high):
+            family = Family([model.system(1.0 / slowness)])
+            middles = family.breakpoints + np.diff(np.append(family.breakpoints, 1.0)) / 2.0
+            found.append(np.linalg.eigvals(family.state_matrices(middles)).ravel() / slowness)
+        return cls(low, high, np.concatenate(found).astype(complex))
+
+    @cached_property
+    def live_angle(self) -> tuple[Array, Array]:
+        """Slowness, ascending, and angle [rad] by which the fastest motion turns that has not died within a period.
+
+        The angle is summed up from the first slowness on and runs straight between.
+        """
+        decay = np.maximum(-self.exponents.real, _DEAD / (2.0 * self.high))
+        dead = _DEAD / decay
+        slowness = np.unique(np.clip(np.append(dead, [self.low, self.high]), self.low, self.high))
+        middle = (slowness[1:] + slowness[:-1]) / 2.0
+        fastest = np.where(dead > middle[:, None], np.abs(self.exponents.imag), 0.0).max(axis=1)
+        return slowness, np.append(0.0, np.cumsum(fastest * np.diff(slowness)))
+
+    def points(self, step: float, fewest: int) -> Array:
+        """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range."""
+        slowness, angle = self.live_angle
+        density = angle / step + fewest * (slowness - self.low) / (self.high - self.low)
+        places = np.linspace(0.0, density[-1], int(np.ceil(density[-1])) + 1)
+        points = np.interp(places, density, slowness)
+        points[[0, -1]] = self.low, self.high
+        return np.asarray(points, dtype=float)
+
+    def degree(self, low: float, high: float) -> int:
+        """Even degree at which the Chebyshev series of all motions between two values of slowness have ended."""
+        nodes = (low + high) / 2.0 + (high - low) / 2.0 * _lobatto(_LONGEST)
+        motions = np.exp(np.minimum(self.exponents.real, 0.0) * nodes[:, None]) * np.exp(
+            1j * self.exponents.imag * nodes[:, None]
+        )
+        sizes = np.abs(_coefficients(motions)).max(axis=1)
+        last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
+        return max(2 * _LOWEST_DEGREE, 2 * ((last + 2) // 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,16 +108,22 @@ class _Window:
 
     def values(self, slowness: Array) -> Array:
         """Matrices, shape (m, d, d)."""
-        return np.tensordot(self._basis(slowness), self.coefficients, axes=1)
+        return self._sum(self.coefficients, slowness)
 
     def slopes(self, slowness: Array) -> Array:
         """Their derivatives by slowness, shape (m, d, d)."""
-        slope = chebyshev.chebder(self.coefficients, axis=0) / ((self.high - self.low) / 2.0)
-        return np.tensordot(self._basis(slowness)[:, :-1], slope, axes=1)
+        return self._sum(self._slope_coefficients, slowness)
 
-    def _basis(self, slowness: Array) -> Array:
+    @cached_property
+    def _slope_coefficients(self) -> Array:
+        half = (self.high - self.low) / 2.0
+        return np.asarray(chebyshev.chebder(self.coefficients, axis=0) / half, dtype=float)
+
+    def _sum(self, coefficients: Array, slowness: Array) -> Array:
         local = (slowness - (self.high + self.low) / 2.0) / ((self.high - self.low) / 2.0)
-        return np.asarray(chebyshev.chebvander(np.clip(local, -1.0, 1.0), self.coefficients.shape[0] - 1))
+        angle = np.arccos(np.clip(local, -1.0, 1.0))
+        basis = np.cos(angle[:, None] * np.arange(coefficients.shape[0]))
+        return np.tensordot(basis, coefficients, axes=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,16 +132,22 @@ class MultiplierCurve:
 
     Attributes
     ----------
-    fastest_angle : tuple of float
-        Angle ω T0 [rad] by which the fastest motion turns in a period, at the highest and the lowest speed.
-    error : float
-        Largest distance of a multiplier from that of a more accurate method, at three speeds between the nodes.
+    model : Model
+    method : Method
+        Method of the transition matrices.
+    lowest_speed, highest_speed : float
+        Range of speed [rad/s].
+    motions : FrozenMotions
+        How fast the model moves and what dies within a period.
+    windows : tuple
+        Series on parts of the range.
     """
 
+    model: Model
+    method: Method
     lowest_speed: float
     highest_speed: float
-    fastest_angle: tuple[float, float]
-    error: float
+    motions: FrozenMotions
     windows: tuple[_Window, ...]
 
     @classmethod
@@ -82,28 +161,31 @@ class MultiplierCurve:
         ArithmeticError
             If they do not vary smoothly with speed.
         """
-        ends = [model.system(speed) for speed in (highest_speed, lowest_speed)]
-        families = [Family([system]) for system in ends]
-        angles = (families[0].fastest_angle, families[1].fastest_angle)
-        scale = families[0].scale
+        scale = Family([model.system(highest_speed)]).scale
         inverse = np.linalg.inv(scale)
         chosen = method_for(model, lowest_speed, highest_speed) if method is None else method
 
         def matrices(slowness: Array) -> Array:
-            systems = [model.system(1.0 / x) for x in slowness.tolist()]
-            return np.asarray(scale @ _family_matrices(systems, chosen) @ inverse, dtype=float)
+            found = np.empty((slowness.size, *scale.shape))
+            for part in _neighbours(slowness):
+                systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
+                found[part] = _family_matrices(systems, chosen)
+            return np.asarray(scale @ found @ inverse, dtype=float)
 
-        count = int(np.ceil(abs(angles[1] - angles[0]) / _WINDOW_ANGLE)) or 1
-        edges = np.linspace(1.0 / highest_speed, 1.0 / lowest_speed, count + 1)
+        motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
         windows = [
             window
-            for low, high in pairwise(edges.tolist())
-            for window in _windows(matrices, float(low), float(high), _MOST_CUTS)
+            for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
+            for window in _windows(matrices, motions, low, high, _MOST_CUTS)
         ]
-        curve = cls(lowest_speed, highest_speed, angles, 0.0, tuple(windows))
-        checked = 1.0 / (edges[0] + (edges[-1] - edges[0]) * np.array([0.0371, 0.4713, 0.9329]))
-        error = max(_distance(curve, model.system(float(v)), float(v), chosen) for v in checked)
-        return cls(lowest_speed, highest_speed, angles, error, tuple(windows))
+        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows))
+
+    @cached_property
+    def error(self) -> float:
+        """Largest distance of a multiplier from that of a more accurate method, at three speeds between the nodes."""
+        low, high = 1.0 / self.highest_speed, 1.0 / self.lowest_speed
+        speeds = (1.0 / (low + (high - low) * np.array([0.0371, 0.4713, 0.9329]))).tolist()
+        return max(_distance(self, self.model.system(v), v, self.method) for v in speeds)
 
     def transition_matrices(self, speeds: Array) -> Array:
         """Scaled Φ at speeds (m,), shape (m, 2n, 2n)."""
@@ -115,6 +197,8 @@ class MultiplierCurve:
 
     def _by_window(self, speeds: Array, evaluate: Callable[[_Window, Array], Array]) -> Array:
         slowness = 1.0 / np.asarray(speeds, dtype=float)
+        if len(self.windows) == 1:
+            return evaluate(self.windows[0], slowness)
         found = np.empty((slowness.size, *self.windows[0].coefficients.shape[1:]))
         starts = np.array([window.low for window in self.windows])
         where = np.clip(np.searchsorted(starts, slowness, side="right") - 1, 0, None)
@@ -147,11 +231,21 @@ def _family_matrices(systems: list[PeriodicSystem], method: Method) -> Array:
         return np.concatenate([transition_matrices([system], AdaptiveMagnus()) for system in systems])
 
 
-def _windows(evaluate: Callable[[Array], Array], low: float, high: float, cuts: int) -> list[_Window]:
+def _neighbours(slowness: Array) -> list[NDArray[np.intp]]:
+    """Numbers of values that lie close together, group by group."""
+    order = np.argsort(slowness)
+    steps = np.floor(np.log(slowness[order] / slowness[order[0]]) / np.log(_TOGETHER))
+    return np.split(order, np.flatnonzero(np.diff(steps)) + 1)
+
+
+def _windows(
+    evaluate: Callable[[Array], Array], motions: FrozenMotions, low: float, high: float, cuts: int
+) -> list[_Window]:
     """Series on one window, or on halves of it where its degree does not suffice."""
     middle, half = (low + high) / 2.0, (high - low) / 2.0
-    values = evaluate(middle + half * _lobatto(_DEGREES[0]))
-    for degree in _DEGREES:
+    degree = motions.degree(low, high) // 2
+    values = evaluate(middle + half * _lobatto(degree))
+    for _ in range(_DOUBLINGS + 1):
         if values.shape[0] <= degree:
             # The points of the coarser rule are every second one of the finer.
             between = evaluate(middle + half * _lobatto(degree)[1::2])
@@ -162,12 +256,14 @@ def _windows(evaluate: Callable[[Array], Array], low: float, high: float, cuts: 
         tail = np.abs(coefficients[-2:]).max()
         if tail <= _TOLERANCE * max(1.0, float(np.abs(values).max())):
             return [_Window(low, high, coefficients)]
+        degree *= 2
     if cuts == 0:
         raise ArithmeticError(
             f"transition matrices do not vary smoothly with speed between {1.0 / high:.6g} and {1.0 / low:.6g} rad/s: "
             f"the last Chebyshev coefficient is {tail:.2g}"
         )
-    return _windows(evaluate, low, middle, cuts - 1) + _windows(evaluate, middle, high, cuts - 1)
+    halves = ((low, middle), (middle, high))
+    return [window for part in halves for window in _windows(evaluate, motions, *part, cuts - 1)]
 
 
 def _lobatto(degree: int) -> Array:

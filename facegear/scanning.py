@@ -19,9 +19,9 @@ from scipy.optimize import minimize_scalar
 from facegear.multiplier_curves import ComplexArray, MultiplierCurve
 from facegear.piecewise import Array
 
-# Largest angle [rad] by which the fastest motion turns from one sample to the next.
+# Largest angle [rad] by which the fastest live motion turns from one sample to the next.
 _SAMPLE_ANGLE = 0.2
-_FEWEST_SAMPLES = 65
+_FEWEST_SAMPLES = 64
 # A pair is followed if so many times its foretold coupling could make it unstable.
 _SAFETY = 4.0
 # Reach of the expansion around a sample, in steps: neighbours overlap.
@@ -60,11 +60,9 @@ class Scan:
 def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) -> Scan:
     """Spectral radii on a grid, at all meetings of multipliers that matter, and at extremes between samples."""
     low, high = 1.0 / curve.highest_speed, 1.0 / curve.lowest_speed
-    turn = abs(curve.fastest_angle[1] - curve.fastest_angle[0])
-    count = max(_FEWEST_SAMPLES, int(np.ceil(turn / _SAMPLE_ANGLE)) + 1)
-    grid, step = np.linspace(low, high, count, retstep=True)
+    grid = curve.motions.points(_SAMPLE_ANGLE, _FEWEST_SAMPLES)
     seeds = np.concatenate([grid, [1.0 / speed for speed in hints if low < 1.0 / speed < high]])
-    meetings = _meetings(curve, seeds, float(step), threshold)
+    meetings = _meetings(curve, seeds, _steps(grid, seeds), threshold)
     speeds = np.concatenate([[curve.lowest_speed, curve.highest_speed], 1.0 / grid[1:-1]])
     scan = Scan(np.sort(speeds), curve.spectral_radii(np.sort(speeds)))
     scan = scan.with_speeds(curve, 1.0 / np.concatenate([seeds, meetings]))
@@ -72,9 +70,17 @@ def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) ->
     return scan.with_speeds(curve, _gaps(curve, scan, threshold))
 
 
-def _meetings(curve: MultiplierCurve, seeds: Array, step: float, threshold: float) -> Array:
+def _steps(grid: Array, points: Array) -> Array:
+    """Distance of the points of a grid next to each point, the larger of both sides."""
+    steps = np.diff(grid)
+    right = np.searchsorted(grid, points, side="right").clip(1, steps.size) - 1
+    left = np.searchsorted(grid, points, side="left").clip(1, steps.size) - 1
+    return np.asarray(np.maximum(steps[left], steps[right]))
+
+
+def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: float) -> Array:
     """Slowness 1/speed where phases of two multipliers meet whose growth there could pass the threshold."""
-    centres, reach = seeds, np.full(seeds.size, _REACH * step)
+    centres, reach = seeds, _REACH * steps
     found = []
     for _ in range(_ROUNDS):
         parts = [

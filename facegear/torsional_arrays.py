@@ -16,17 +16,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from facegear.columns import interpolated_spectral_radii
-from facegear.floquet import transition_matrices
 from facegear.gearboxes import HIGHEST_SPEED_RPM, ProportionalGearbox, TorsionalFigure
 from facegear.hsu import SpeedBand, band_speeds
 from facegear.modal import ModalExpansion, standard_form
 from facegear.models import replace_parameter
+from facegear.multiplier_curves import MultiplierCurve
 from facegear.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.radau import Radau
 from facegear.reference import filled_rows, label_lines, variable
-from facegear.stepping import Family
 from facegear.tracing import borders, tongues
 
 METHOD = Radau()
@@ -41,8 +39,6 @@ _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
 _HSU_POINTS = 9
 # Natural frequencies further apart than this ratio do not know of one another.
 _NEIGHBOURS = 3.0
-# Speeds of a row computed together.
-_TOGETHER = 8
 
 
 def describe(model: ProportionalGearbox) -> str:
@@ -194,21 +190,9 @@ def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
         ln(max|α|)/T0 [1/s].
     """
     speeds = np.asarray(rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm")))
-    # Coordinates in which entries are of comparable size, the same for the whole row.
-    scale = Family([model.system(float(speeds.max()))]).scale
-    inverse = np.linalg.inv(scale)
-
-    def matrices(slowness: FloatArray) -> FloatArray:
-        # Systems computed together share their panels: neighbours in speed do not cost each other any.
-        found = np.empty((slowness.size, *scale.shape))
-        order = np.argsort(slowness)
-        for part in np.array_split(order, max(1, slowness.size // _TOGETHER)):
-            systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
-            found[part] = transition_matrices(systems, METHOD)
-        return np.asarray(scale @ found @ inverse, dtype=float)
-
-    radii = interpolated_spectral_radii(matrices, 1.0 / speeds)
-    return np.asarray(np.log(radii) * speeds * model.gearbox.drive.gear_teeth / (2 * np.pi), dtype=float)
+    curve = MultiplierCurve.of(model, float(speeds.min()), float(speeds.max()), METHOD)
+    per_second = speeds * model.gearbox.drive.gear_teeth / (2 * np.pi)
+    return np.asarray(np.log(curve.spectral_radii(speeds)) * per_second, dtype=float)
 
 
 def growth_map(
