@@ -34,13 +34,13 @@ test: environment ## run the tests (a minute or so)
 	@$(PYTEST) -n 2 -m 'not slow and not book'
 
 test-slow: environment ## run the tests that take a minute each
-	@$(PYTEST) -n 2 -m 'slow and not book'
+	@$(PYTEST) -n 2 --dist loadscope -m 'slow and not book'
 
 test-lowest: environment ## run the tests with the oldest versions that pyproject.toml allows
 	@$(PYTHON) tools/test_lowest.py -n 2 -m 'not slow and not book'
 
 test-book: environment ## look at the built book in Chromium (make book first)
-	@$(PYTEST) -n 2 -m book
+	@$(PYTEST) -n 2 --dist loadscope -m book
 
 lint: environment ## check style, types, import order, notebooks
 	$(PYTHON) -m ruff check .

@@ -9,13 +9,13 @@ from pathlib import Path
 import nbformat
 import pytest
 import yaml
-from playwright.sync_api import Page, Playwright
+from playwright.sync_api import Browser, Page, Playwright
 from pypdf import PdfReader
 from pypdf.generic import ArrayObject, Destination
 
 from tools.print_book import FLAGS, lay_out
 
-pytestmark = pytest.mark.book
+pytestmark = [pytest.mark.book, pytest.mark.takes(20)]
 
 ROOT = Path(__file__).resolve().parents[1]
 PDF = ROOT / "build" / "facegear.pdf"
@@ -28,10 +28,15 @@ def reader() -> PdfReader:
 
 
 @pytest.fixture(scope="module")
-def text(reader: PdfReader) -> str:
+def texts(reader: PdfReader) -> list[str]:
+    """Return the text of each page, which takes a while to find between the lines of the figures."""
+    return [page.extract_text() for page in reader.pages]
+
+
+@pytest.fixture(scope="module")
+def text(texts: list[str]) -> str:
     # The browser's fonts set fi and fl as one sign.
-    found = unicodedata.normalize("NFKC", " ".join(page.extract_text() for page in reader.pages))
-    return " ".join(found.split())
+    return " ".join(unicodedata.normalize("NFKC", " ".join(texts)).split())
 
 
 def titles() -> list[str]:
@@ -75,10 +80,10 @@ def test_equations_are_set(text: str) -> None:
     assert text.count("$") == 0
 
 
-def test_pages_are_a4_and_none_is_empty(reader: PdfReader) -> None:
-    for page in reader.pages:
-        assert [round(float(side) / 72 * 25.4) for side in page.mediabox[2:]] == [210, 297]
-        assert page.extract_text().strip()
+def test_pages_are_a4_and_none_is_empty(reader: PdfReader, texts: list[str]) -> None:
+    for number, page in enumerate(reader.pages, start=1):
+        assert [round(float(side) / 72 * 25.4) for side in page.mediabox[2:]] == [210, 297], number
+    assert not [number for number, text in enumerate(texts, start=1) if not text.strip()]
 
 
 def test_links_stay_inside_or_lead_to_the_web(reader: PdfReader) -> None:
@@ -97,13 +102,20 @@ def test_links_stay_inside_or_lead_to_the_web(reader: PdfReader) -> None:
     assert inside > len(titles())
 
 
-@pytest.fixture
-def sheet(chromium_driver: Playwright) -> Iterator[Page]:
+@pytest.fixture(scope="module")
+def browser(chromium_driver: Playwright) -> Iterator[Browser]:
     found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     assert found, "Chromium is missing: apt-get install chromium"
-    browser = chromium_driver.chromium.launch(executable_path=found, args=FLAGS)
-    yield browser.new_page(viewport={"width": 800, "height": 600})
-    browser.close()
+    running = chromium_driver.chromium.launch(executable_path=found, args=FLAGS)
+    yield running
+    running.close()
+
+
+@pytest.fixture
+def sheet(browser: Browser) -> Iterator[Page]:
+    page = browser.new_page(viewport={"width": 800, "height": 600})
+    yield page
+    page.close()
 
 
 def page_with(tmp_path: Path, content: str) -> str:
