@@ -1,7 +1,7 @@
 """What there is in the dissertation, section by section and figure by figure, and what of it the ledger covers.
 
-``data/contents.yaml`` lists the sections, tables and figures; :func:`coverage` holds the rows of the ledger against
-it, so that a section without a row shows.
+``data/contents.yaml`` lists the sections with their equations, the tables and the figures; :func:`coverage` and
+:func:`bare_equations` hold the rows of the ledger against it, so that a section or an equation without a row shows.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from facegear.printed import PrintedValue
 
 _NUMBER = r"\d+\.\d+(?:\.\d+)?(?:\([a-z]\))?"
 _LIST = rf"{_NUMBER}(?:(?:, and|,| and| to) {_NUMBER})*"
+_EQUATION = r"\((\d+)-(\d+)\)"
 _NAMES = {"section": r"[Ss]ections?", "table": r"Tables?", "figure": r"Figs?\.?"}
 
 
@@ -74,12 +75,15 @@ class PrintedFigure:
         Whether it shows numbers, not only an arrangement.
     not_drawn : str
         Why it has no counterpart in the book; empty if it must have one.
+    nothing_to_check : str
+        Why the ledger has no row on it although it shows numbers; empty if it must have one.
     """
 
     number: str
     about: str
     data: bool = False
     not_drawn: str = ""
+    nothing_to_check: str = ""
 
     @property
     def chapter(self) -> int:
@@ -88,12 +92,35 @@ class PrintedFigure:
 
 
 @dataclass(frozen=True)
+class WithoutRow:
+    """Equations on which the ledger has no row.
+
+    Attributes
+    ----------
+    numbers : str
+        Their numbers, such as ``(2-1) to (2-3), (2-5)``.
+    because : str
+        Why there is nothing to compare.
+    """
+
+    numbers: str
+    because: str
+
+
+@dataclass(frozen=True)
 class Contents:
     """The dissertation's sections of chapters 2 to 8, its tables and its figures, in its order."""
 
     sections: tuple[Section, ...]
+    equations_without_row: tuple[WithoutRow, ...]
     tables: tuple[Section, ...]
     figures: tuple[PrintedFigure, ...]
+
+    @property
+    def equations(self) -> tuple[str, ...]:
+        """Numbers of all equations, such as ``2-1``, in their order."""
+        ranges = [section.equations for section in self.sections if section.equations]
+        return tuple(number for first, last in ranges for number in cited_equations(f"({first}) to ({last})"))
 
 
 @dataclass(frozen=True)
@@ -122,8 +149,10 @@ def load_contents(path: str | Path) -> Contents:
         raise ContentsError(f"list of contents {path.name} is missing in {path.parent}")
     try:
         lists = yaml.safe_load(path.read_text(encoding="utf-8"))
-        known_keys(path.name, lists, required=("sections", "tables", "figures"))
+        required = ("sections", "tables", "figures")
+        lists = known_keys(path.name, lists, required, optional=("equations_without_row",))
         sections = tuple(_section(path.name, "section", entry) for entry in lists["sections"])
+        without = tuple(_without_row(path.name, entry) for entry in lists.get("equations_without_row", ()))
         tables = tuple(_section(path.name, "table", entry) for entry in lists["tables"])
         figures = tuple(_figure(path.name, entry) for entry in lists["figures"])
     except (yaml.YAMLError, TypeError, ValueError) as error:
@@ -133,7 +162,7 @@ def load_contents(path: str | Path) -> Contents:
         repeated = sorted({number for number in numbers if numbers.count(number) > 1})
         if repeated:
             raise ContentsError(f"{path.name}: {', '.join(repeated)} stands more than once")
-    return Contents(sections, tables, figures)
+    return Contents(sections, without, tables, figures)
 
 
 def cited(text: str, kind: str) -> tuple[str, ...]:
@@ -169,6 +198,62 @@ def cited(text: str, kind: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(numbers))
 
 
+def cited_equations(text: str) -> tuple[str, ...]:
+    """Numbers of the equations that a text names.
+
+    Parameters
+    ----------
+    text : str
+        Such as ``Equations (6-8) to (6-10), (6-12)``.
+
+    Returns
+    -------
+    tuple of str
+        Such as ``("6-8", "6-9", "6-10", "6-12")``: ranges written out, each once, in their order.
+    """
+    numbers: list[str] = []
+    for match in re.finditer(rf"{_EQUATION}(?: to {_EQUATION})?", text):
+        chapter, first, _, last = match.groups()
+        numbers += [f"{chapter}-{number}" for number in range(int(first), int(last or first) + 1)]
+    return tuple(dict.fromkeys(numbers))
+
+
+def compared_equations(text: str) -> tuple[str, ...]:
+    """As :func:`cited_equations`, without those that only mark a place, as in ``after (2-11)``."""
+    return cited_equations(re.sub(rf"\b(?:after|before) {_EQUATION}", "", text))
+
+
+def bare_equations(contents: Contents, printed: Iterable[PrintedValue]) -> tuple[str, ...]:
+    """Equations that neither a row of the ledger names nor the list of contents excuses.
+
+    Parameters
+    ----------
+    contents : Contents
+    printed : iterable of PrintedValue
+        Their ``where`` names equations by number.
+    """
+    named = {number for value in printed for number in compared_equations(value.where)}
+    excused = {
+        number for entry in contents.equations_without_row for number in cited_equations(entry.numbers)
+    }
+    return tuple(number for number in contents.equations if number not in named | excused)
+
+
+def equations_as_markdown(contents: Contents, printed: Sequence[PrintedValue]) -> str:
+    """How many equations rows of the ledger name, and why the others have none, as text with a Markdown table."""
+    named = {number for value in printed for number in compared_equations(value.where)}
+    compared = [number for number in contents.equations if number in named]
+    bare = bare_equations(contents, printed)
+    lines = [
+        f"Of {len(contents.equations)} numbered equations {len(compared)} are named by a row of the ledger.",
+        "",
+    ]
+    lines += ["| without a row | because |", "|---|---|"]
+    lines += [f"| {entry.numbers} | {entry.because} |" for entry in contents.equations_without_row]
+    lines += [f"| {', '.join(f'({number})' for number in bare)} | **not compared yet** |"] * bool(bare)
+    return "\n".join(lines)
+
+
 def coverage(contents: Contents, printed: Iterable[PrintedValue]) -> tuple[Covered, ...]:
     """Count the rows of the ledger on each section and table.
 
@@ -199,7 +284,7 @@ def coverage_as_markdown(covered: Sequence[Covered]) -> str:
 def _is_about(section: Section, where: str) -> bool:
     if section.number in cited(where, section.kind):
         return True
-    return any(section.has_equation(number) for number in re.findall(r"\((\d+-\d+)\)", where))
+    return any(section.has_equation(number) for number in cited_equations(where))
 
 
 def _between(first: str, last: str) -> list[str]:
@@ -223,7 +308,15 @@ def _section(name: str, kind: str, entry: Any) -> Section:
     return Section(kind, entry["number"], equations, entry.get("nothing_to_check", ""))
 
 
+def _without_row(name: str, entry: Any) -> WithoutRow:
+    known_keys(f"equations of {name}", entry, required=("numbers", "because"))
+    if not cited_equations(str(entry["numbers"])):
+        raise ValueError(f"numbers = {entry['numbers']!r} must name equations, as (2-1) to (2-3)")
+    return WithoutRow(**entry)
+
+
 def _figure(name: str, entry: Any) -> PrintedFigure:
-    known_keys(f"figure of {name}", entry, required=("number", "about"), optional=("data", "not_drawn"))
+    optional = ("data", "not_drawn", "nothing_to_check")
+    known_keys(f"figure of {name}", entry, required=("number", "about"), optional=optional)
     _text_number(entry)
     return PrintedFigure(**entry)

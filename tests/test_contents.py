@@ -7,6 +7,7 @@ import pytest
 from facegear import contents
 from facegear.printed import PrintedValue, load_printed
 
+REST = "equations_without_row: []\ntables: []\nfigures: []\n"
 ROOT = Path(__file__).resolve().parents[1]
 CONTENTS = contents.load_contents(ROOT / "data" / "contents.yaml")
 PRINTED = {path.stem: load_printed(path) for path in sorted((ROOT / "data" / "printed").glob("*.yaml"))}
@@ -37,6 +38,31 @@ def test_numbers_are_read_from_what_a_text_cites(text, kind, numbers):
 def test_other_kinds_are_refused():
     with pytest.raises(ValueError, match="kind = 'page'"):
         contents.cited("page 3", "page")
+
+
+@pytest.mark.parametrize(
+    ("text", "numbers"),
+    [
+        ("Equations (6-8) to (6-10), (6-12)", ("6-8", "6-9", "6-10", "6-12")),
+        ("Section 3.5, (3-14)", ("3-14",)),
+        ("(2-7) and (2-7)", ("2-7",)),
+        ("Section 2-1, Figs 4.4(a) to 4.5", ()),
+    ],
+)
+def test_numbers_of_equations_are_read(text, numbers):
+    assert contents.cited_equations(text) == numbers
+
+
+def test_an_equation_that_marks_a_place_is_not_compared():
+    text = "Section 2.2.1, after (2-11), before (2-12), (2-13)"
+    assert contents.compared_equations(text) == ("2-13",)
+
+
+def test_a_range_of_equations_counts_for_every_section_that_it_touches():
+    counts = {
+        entry.section.number: entry.rows for entry in contents.coverage(CONTENTS, [about("(3-4) to (3-9)")])
+    }
+    assert [number for number, rows in counts.items() if rows] == ["3.3", "3.4", "3.5"]
 
 
 def test_a_row_counts_for_its_section_by_number_or_by_equation():
@@ -72,6 +98,48 @@ def test_every_section_of_a_chapter_with_a_ledger_has_a_row_or_a_reason():
     assert not bare
 
 
+def test_every_equation_has_a_row_or_a_reason():
+    printed = [value for values in PRINTED.values() for value in values]
+    assert contents.bare_equations(CONTENTS, printed) == ()
+    without = [value for value in printed if "2-26" not in contents.cited_equations(value.where)]
+    assert contents.bare_equations(CONTENTS, without) == ("2-26",)
+
+
+def test_every_figure_with_numbers_has_a_row_or_a_reason():
+    printed = [value for values in PRINTED.values() for value in values]
+    named = {number for value in printed for number in contents.cited(value.where, "figure")}
+    bare = [
+        figure.number
+        for figure in CONTENTS.figures
+        if figure.data and not figure.nothing_to_check and figure.number not in named
+    ]
+    assert not bare
+
+
+def test_reasons_are_given_only_where_there_is_no_row():
+    """A reason that a row has overtaken is not true any more."""
+    printed = [value for values in PRINTED.values() for value in values]
+    covered = contents.coverage(CONTENTS, printed)
+    assert not [entry.section.number for entry in covered if entry.rows and entry.section.nothing_to_check]
+    named = {number for value in printed for number in contents.compared_equations(value.where)}
+    excused = [n for e in CONTENTS.equations_without_row for n in contents.cited_equations(e.numbers)]
+    assert len(excused) == len(set(excused))
+    assert set(excused) <= set(CONTENTS.equations) - named
+    figures = {number for value in printed for number in contents.cited(value.where, "figure")}
+    assert not [
+        f.number for f in CONTENTS.figures if f.nothing_to_check and (f.number in figures or not f.data)
+    ]
+
+
+def test_equations_that_are_not_compared_say_why_or_show():
+    text = contents.equations_as_markdown(CONTENTS, [about("(2-4)"), about("(2-7) to (2-8)")])
+    lines = text.splitlines()
+    assert lines[0] == "Of 132 numbered equations 3 are named by a row of the ledger."
+    assert "| (2-5), (2-6) | Define the transition matrix. |" in lines
+    assert lines[-1].startswith("| (2-10), (2-11), (2-19), ")
+    assert lines[-1].endswith(" | **not compared yet** |")
+
+
 def test_every_printed_value_names_a_place_that_exists():
     listed = {
         "section": {entry.number for entry in CONTENTS.sections},
@@ -85,6 +153,7 @@ def test_every_printed_value_names_a_place_that_exists():
                 number for kind, numbers in places.items() for number in numbers if number not in listed[kind]
             ]
             assert not unknown, (name, value.id, unknown)
+            assert set(contents.cited_equations(value.where)) <= set(CONTENTS.equations), (name, value.id)
             by_equation = contents.coverage(CONTENTS, [value])
             assert any(places.values()) or any(entry.rows for entry in by_equation), (name, value.id)
 
@@ -111,18 +180,22 @@ def test_the_list_is_complete():
     ("text", "message"),
     [
         ("", "must be a mapping"),
-        ("sections: []\ntables: []\n", "missing figures"),
-        ("sections: [{number: 4.10}]\ntables: []\nfigures: []\n", "must be in quotes"),
-        ('sections: [{number: "4.1", title: x}]\ntables: []\nfigures: []\n', "unknown title"),
+        ("sections: []\nequations_without_row: []\ntables: []\n", "missing figures"),
+        (f"sections: [{{number: 4.10}}]\n{REST}", "must be in quotes"),
+        (f'sections: [{{number: "4.1", title: x}}]\n{REST}', "unknown title"),
         (
-            'sections: [{number: "4.1", equations: ["4-1"]}]\ntables: []\nfigures: []\n',
+            f'sections: [{{number: "4.1", equations: ["4-1"]}}]\n{REST}',
             "the first and the last",
         ),
         (
-            'sections: [{number: "4.1"}, {number: "4.1"}]\ntables: []\nfigures: []\n',
+            f'sections: [{{number: "4.1"}}, {{number: "4.1"}}]\n{REST}',
             "4.1 stands more than once",
         ),
         ("sections: [\n", "contents.yaml"),
+        (
+            "sections: []\ntables: []\nfigures: []\nequations_without_row: [{numbers: 2-1, because: x}]\n",
+            "must name equations",
+        ),
     ],
 )
 def test_a_wrong_list_is_refused(tmp_path, text, message):
