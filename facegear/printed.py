@@ -28,7 +28,7 @@ UNDECIDED = "cannot be decided from the text"
 STATUSES = (REPRODUCED, REPRODUCED_UNDER_CONVENTION, DIFFERS, UNDECIDED)
 
 _REQUIRED = ("id", "where", "quantity", "printed", "how", "status", "remark")
-_OPTIONAL = ("unit", "convention")
+_OPTIONAL = ("unit", "convention", "given")
 
 
 class LedgerError(Exception):
@@ -56,6 +56,8 @@ class PrintedValue:
         How it is computed here.
     convention : str
         What the text leaves open and had to be chosen to reproduce it; empty if nothing.
+    given : bool
+        Whether it is an input that was taken over from a table or a caption, and not a result.
     status : str
         One of :data:`STATUSES`.
     remark : str
@@ -71,6 +73,7 @@ class PrintedValue:
     remark: str
     unit: str = ""
     convention: str = ""
+    given: bool = False
 
     def holds(self, computed: float | bool) -> bool:
         """Whether a computed value agrees with the printed one to every printed digit.
@@ -217,18 +220,22 @@ def _found(row: LedgerRow) -> str:
 
 
 def counts_as_markdown(chapters: Mapping[int, Sequence[LedgerRow]]) -> str:
-    """How many rows of each chapter and of all have each status, as a Markdown table.
+    """How many rows of each chapter and of all have each status, and are inputs, as a Markdown table.
 
     Parameters
     ----------
     chapters : mapping of int to sequence of LedgerRow
         Rows by number of the chapter.
     """
-    lines = [f"| chapter | {' | '.join(STATUSES)} | all |", "|---" * (len(STATUSES) + 2) + "|"]
+    lines = [
+        f"| chapter | {' | '.join(STATUSES)} | all | of these inputs, taken over |",
+        "|---" * (len(STATUSES) + 3) + "|",
+    ]
     everything = [row for rows in chapters.values() for row in rows]
     for name, rows in [*chapters.items(), ("**all**", everything)]:
         counts = [sum(row.status == status for row in rows) for status in STATUSES]
-        lines.append(f"| {name} | {' | '.join(map(str, counts))} | {len(rows)} |")
+        given = sum(row.printed.given for row in rows)
+        lines.append(f"| {name} | {' | '.join(map(str, counts))} | {len(rows)} | {given} |")
     return "\n".join(lines)
 
 
@@ -337,6 +344,8 @@ def _printed_value(file_name: str, entry: Any) -> PrintedValue:
         raise LedgerError(
             f"{file_name}, {value.id}: status '{value.status}' must be one of {', '.join(STATUSES)}"
         )
+    if not isinstance(value.given, bool):
+        raise LedgerError(f"{file_name}, {value.id}: given = {value.given!r} must be true or false")
     if isinstance(value.printed, bool):
         return value
     try:

@@ -82,6 +82,7 @@ def test_nothing_printed_is_left_out_and_nothing_is_made_up(tmp_path):
         ({"printed": 231.94}, "must be digits in quotes"),
         ({"printed": "about 232"}, "must be digits in quotes"),
         ({"colour": "red"}, "colour"),
+        ({"given": "yes"}, "given = 'yes' must be true or false"),
     ],
 )
 def test_bad_entries_are_refused(tmp_path, change, message):
@@ -134,7 +135,7 @@ def test_the_files_of_the_repository_are_well_formed(path):
 def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
     entries = [
         ENTRY,
-        ENTRY | {"id": "b", "printed": "282", "status": printed.DIFFERS},
+        ENTRY | {"id": "b", "printed": "282", "status": printed.DIFFERS, "given": True},
         ENTRY
         | {
             "id": "c",
@@ -153,8 +154,8 @@ def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
     assert "| 282 mm | 283.04 mm | differs |" in table[3]
     assert "| stated | holds |" in table[4]
     assert "| 231.94 mm | - |" in table[5]
-    assert printed.counts_as_markdown({3: rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 |"
-    assert printed.counts_as_markdown({3: rows}).splitlines()[3] == "| **all** | 1 | 1 | 1 | 1 | 4 |"
+    assert printed.counts_as_markdown({3: rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 | 1 |"
+    assert printed.counts_as_markdown({3: rows}).splitlines()[3] == "| **all** | 1 | 1 | 1 | 1 | 4 | 1 |"
     (remark,) = [line for line in printed.remarks_as_markdown(rows).splitlines() if "282" in line]
     assert "282 mm | To every digit." in remark
     assert remark.endswith(": 283.04 mm |")
