@@ -230,21 +230,40 @@ class ContactRegion:
     def kinks(self) -> tuple[float, ...]:
         """C between entry and exit where an end of the contact line changes edge, descending [rad]."""
         changes = [self.edge_angle(self.outer_radius, self.tip_roll) - self.tip_roll]
+        if self.base_circle is not None:
+            changes.append(self.base_circle)
         if self._inner_edge_in_reach:
             roll = self.top_roll(self.inner_radius)
             changes.append(self.edge_angle(self.inner_radius, roll) - roll)
-            if roll == 0.0:
-                # The base circle comes between tooth top and inner edge.
-                changes.append(self._base_angle())
+        elif self.tooth_top_distance < self.base_radius:
+            # Neither tooth top nor inner edge is reached: lines that began on the base circle then do at α = 0.
+            changes.append(0.0)
         return tuple(sorted((c for c in changes if self.exit < c < self.entry), reverse=True))
 
-    def _base_angle(self) -> float:
-        """Local pressure angle where the tooth top reaches the base circle θs = 0 [rad]."""
+    @cached_property
+    def base_circle(self) -> float | None:
+        """C at which the tooth top brings the contact line's end down to the base circle [rad]; None if never.
+
+        With few teeth the tooth top lies inside the base circle, r_p − a_g < r_bs, and where it meets θs = 0
+        (for γ = 90° at cos c = (r_p − a_g)/r_bs) the end of the line changes from one to the other. The line
+        goes on: it begins where the involute does, and the shaper, which has the pinion's own flank, has
+        cleared the face gear's tooth beyond. But the involute has a cusp there, ∂r/∂θs ∝ θs, and the depth
+        along the line is stationary: r_bs (cos c + ½θs² cos c) for γ = 90°. So the end comes in as
+        θs = √(2(c − c_b) tan c_b), and length and midpoint of the line have that square root of time in them.
+
+        For γ < 90° the depth rises from θs = 0, by a part cos γ x²/2y² of the way, and the root lies just beyond.
+        For γ > 90° it falls first: the tooth top cuts a sliver out of the line, of up to 0.02 rad, which closes
+        within 1e-4 rad of c and is not taken out here, so that the end jumps over it.
+        """
+        if self.tooth_top_distance >= self.base_radius:
+            return None
 
         def excess(alpha: float) -> float:
             return self.tooth_top_distance - float(self.depth(alpha, 0.0))
 
-        return root(excess, 0.0, _STEEPEST)
+        alpha = root(excess, 0.0, _STEEPEST)
+        on_flank = self.inner_radius < float(self.radial_position(alpha, 0.0))
+        return alpha if on_flank and self.exit < alpha < self.entry else None
 
     # --- whole lines -------------------------------------------------------------------------------------
 

@@ -316,7 +316,7 @@ def _shape_at(body: Body, contact_ratio: float, centroid: Centroid) -> Piecewise
             radius = states.radius.sum(axis=0) / states.in_contact.sum(axis=0)
             return radius, np.zeros_like(radius)
 
-        breakpoints = line.breakpoints
+        breakpoints, tolerance = line.breakpoints, np.full(len(line.breakpoints), 1e-13)
     else:
         path = ContactPath(body.drive, contact_ratio)
 
@@ -327,14 +327,14 @@ def _shape_at(body: Body, contact_ratio: float, centroid: Centroid) -> Piecewise
             angle = (weight * states.angle).sum(axis=0) * (centroid != "radial")
             return (weight * states.radius).sum(axis=0), angle
 
-        breakpoints = path.breakpoints
+        breakpoints, tolerance = path.breakpoints, path.fit_tolerances
     edges = np.append(breakpoints, 1.0)
 
     def shape(fraction: FloatArray, piece: int) -> FloatArray:
         start, end = edges[piece], edges[piece + 1]
         return shape_vector(body, *position(piece, (2 * fraction - start - end) / (end - start)))
 
-    return PiecewiseChebyshev.fit(shape, breakpoints)
+    return PiecewiseChebyshev.fit(shape, breakpoints, tolerance=tolerance)
 
 
 def variants(model: Transverse) -> dict[str, Transverse]:

@@ -13,7 +13,15 @@ from numpy.typing import ArrayLike
 
 from facegear import parameters
 from facegear.contact import ContactRegion, root
-from facegear.flanks import ContactLines, PinionFlank, ToothFlank, pinion_flank, tooth_flank, top_thickness
+from facegear.flanks import (
+    ContactLines,
+    PinionFlank,
+    ToothFlank,
+    pinion_flank,
+    tip_undercut,
+    tooth_flank,
+    top_thickness,
+)
 from facegear.parameters import FloatArray
 from facegear.symbolic import meshing
 
@@ -296,6 +304,12 @@ class Drive:
         """Pinion rotations between entry and exit where an end of the contact line changes edge [rad]."""
         return tuple(c - self.space_half_angle for c in self.contact_region.kinks)
 
+    @property
+    def base_circle_rotation(self) -> float | None:
+        """Rotation at which the contact line's end comes down to the pinion's base circle [rad]; None if never."""
+        c = self.contact_region.base_circle
+        return None if c is None else c - self.space_half_angle
+
     def contact_lines(self, rotation: ArrayLike) -> ContactLines:
         """Contact lines of one tooth pair at pinion rotations φs between φ_out and φ_in.
 
@@ -364,6 +378,34 @@ class Drive:
         ends = (self.inner_limit + offset, self.outer_limit + offset)
         first = self._roll_angle(max(self.dedendum_radius, self.base_radius))
         return pinion_flank(self.contact_region, ends, first, along, across, flank)
+
+    def tip_undercut(self, along: int = 41, across: int = 4) -> FloatArray:
+        """Depth to which the shaper cuts into the flank that it has generated, along the face width [m].
+
+        The condition of undercutting (3-8) asks whether a point of the flank is singular where it is generated,
+        not whether the shaper comes back to it. Between shafts at more than 90° the corner of its tip does, on its
+        way out, and takes some micrometres off the innermost few percent of the face width.
+
+        Parameters
+        ----------
+        along, across : int
+            Points along the face width, equally spaced in −y_p from `flank_start` to R2, and across the profile.
+
+        Returns
+        -------
+        ndarray, shape (along,)
+            Largest depth on each profile, an arc about the shaper's axis; 0 where nothing is cut.
+
+        Raises
+        ------
+        TypeError, ValueError
+            A number of points that is not an integer of at least 2.
+        """
+        return tip_undercut(
+            self.contact_region,
+            parameters.integer_at_least("along", along, 2),
+            parameters.integer_at_least("across", across, 2),
+        )
 
     def top_thickness(self, radius: ArrayLike) -> FloatArray:
         """Thickness of the true face-gear tooth at its top, an arc about the gear's axis [m].

@@ -23,13 +23,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from facegear import parameters
-from facegear.geometry import Drive
+from facegear.geometry import ADDENDUM, Drive
 from facegear.parameters import FloatArray
 
 # Breakpoints closer than this, in mesh periods, are the same instant but for rounding.
 _SAME_INSTANT = 1e-12
 # Total angles within this fraction of a pitch of a whole number of teeth count as whole.
 _WHOLE_PITCH = 1e-9
+# Pieces next to a square root: each is so many times shorter than the one before it, the last as short as this.
+_GRADING, _SHORTEST = 8.0, 1e-9
+# Relative error of fits, and how short a piece must be, in mesh periods, before it may have more.
+_TOLERANCE, _SHORT = 1e-13, 1e-3
 
 
 class PairStates(NamedTuple):
@@ -235,12 +239,68 @@ class ContactPath(_TimedPairs[PairStates]):
         0 (a pair enters), cr − ⌊cr⌋ (a pair leaves), and the instants where an end of a contact line changes
         its bounding edge: corners of the contact region, closed forms at γ = 90°.
 
-        With so few teeth that the tooth top passes below the pinion's base circle (18 and less at 5:1 and 25°),
-        the end of the line reaches it with the square root of time: the piece is continuous there, not smooth.
+        With so few teeth that the end of the line comes down to the pinion's base circle (`base_circle_instant`),
+        it does so with the square root of the time that is left. Pieces shrink towards that instant, each to an
+        eighth, so that polynomials follow it on every one of them down to a billionth of T0.
         """
-        entry, sweep = self.drive.entry_rotation, self.drive.entry_rotation - self.drive.exit_rotation
-        kinks = [(entry - kink) / sweep * self.contact_ratio for kink in self.drive.kink_rotations]
-        return _merged([0.0, self.contact_ratio, *kinks])
+        corners = _merged([0.0, self.contact_ratio, *map(self._age, self.drive.kink_rotations)])
+        root = self.base_circle_instant
+        if root is None:
+            return corners
+        width = min(gap for gap in ((root - c) % 1.0 or 1.0 for c in corners) if gap > _SAME_INSTANT)
+        count = math.ceil(math.log(width / _SHORTEST, _GRADING))
+        return _merged([*corners, *(root - width / _GRADING**k for k in range(1, count + 1))])
+
+    def _age(self, rotation: float) -> float:
+        """Mesh periods since entry at a pinion rotation φs."""
+        sweep = self.drive.entry_rotation - self.drive.exit_rotation
+        return (self.drive.entry_rotation - rotation) / sweep * self.contact_ratio
+
+    @cached_property
+    def base_circle_instant(self) -> float | None:
+        """Fraction of T0 at which a contact line's end comes down to the pinion's base circle; None if none does.
+
+        Just before, the contact point moves at a speed that grows without limit, as one over the square root of
+        the time left (`ContactRegion.base_circle`); positions stay continuous.
+        """
+        rotation = self.drive.base_circle_rotation
+        return None if rotation is None else self._age(rotation) % 1.0
+
+    def require_finite_speed(self, name: str) -> None:
+        """Refuse a contact point whose speed grows without limit, for what has to follow it.
+
+        A mass would need infinite energy: the integral of u̇², of one over the time left.
+
+        Parameters
+        ----------
+        name : str
+            What has to follow it, for the message.
+
+        Raises
+        ------
+        ValueError
+            If a contact line's end comes down to the base circle.
+        """
+        if self.base_circle_instant is None:
+            return
+        drive = self.drive
+        enough = math.floor(2.0 * ADDENDUM / (1.0 - math.cos(drive.pressure_angle))) + 1
+        raise ValueError(
+            f"pinion_teeth = {drive.pinion_teeth} is too few for {name} (gear_teeth = {drive.gear_teeth}, pressure "
+            f"angle {math.degrees(drive.pressure_angle):.4g}°): contact lines end on the pinion's base circle, where "
+            f"the contact point's speed has no limit; {enough} pinion teeth are enough at any gear ratio"
+        )
+
+    @property
+    def fit_tolerances(self) -> FloatArray:
+        """Relative errors that a fit of the positions may have, shape (pieces,) [-].
+
+        On the short pieces next to `base_circle_instant` an error counts by their duration.
+        """
+        widths = np.diff(self.breakpoints, append=1.0)
+        if self.base_circle_instant is None:
+            return np.full(widths.shape, _TOLERANCE)
+        return np.asarray(_TOLERANCE * np.maximum(1.0, _SHORT / widths))
 
     def contact_point(self, fraction: ArrayLike) -> PairStates:
         """Contact point of one tooth pair against the fraction of its own mesh time cr T0.

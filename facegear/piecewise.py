@@ -103,7 +103,7 @@ class PiecewiseChebyshev:
         function: Callable[[Array, int], ArrayLike],
         breakpoints: ArrayLike,
         *,
-        tolerance: float = 1e-13,
+        tolerance: ArrayLike = 1e-13,
         max_degree: int = 256,
     ) -> PiecewiseChebyshev:
         """Fit a function that is smooth between breakpoints, raising the degree until the tail is negligible.
@@ -116,7 +116,7 @@ class PiecewiseChebyshev:
             ``breakpoints[0] + 1``.
         breakpoints : array_like, shape (pieces,)
             Ascending fractions inside [0, 1). A function smooth over the whole period takes ``[0.0]``.
-        tolerance : float
+        tolerance : float or array_like, shape (pieces,)
             Size of the last coefficients relative to the largest value of the function [-].
         max_degree : int
             Highest degree tried.
@@ -143,6 +143,7 @@ class PiecewiseChebyshev:
                 raise ValueError(f"function must be finite on piece {piece}; got a non-finite value")
             return values
 
+        allowed = np.broadcast_to(real_array(np.atleast_1d(tolerance), "tolerance", 1), edges.shape)
         scale = max(float(np.abs(sample(piece, 9)).max()) for piece in range(edges.size))
         series = []
         for piece in range(edges.size):
@@ -152,17 +153,17 @@ class PiecewiseChebyshev:
                 scale = max(scale, float(np.abs(coefficients).max()))
                 sizes = np.abs(coefficients).max(axis=1)
                 # Three coefficients, because an even or odd function has every second one zero.
-                if sizes[-3:].max() <= tolerance * scale:
+                if sizes[-3:].max() <= allowed[piece] * scale:
                     break
                 if count > max_degree:
                     raise ValueError(
                         f"function is not smooth on piece {piece} ({edges[piece]:.6g} to {ends[piece]:.6g} "
                         f"of the period): at degree {count - 1} the last Chebyshev coefficients are "
-                        f"{sizes[-3:].max() / scale:.2g} of the largest value, above {tolerance:.2g}; "
+                        f"{sizes[-3:].max() / scale:.2g} of the largest value, above {allowed[piece]:.2g}; "
                         "add the breakpoint of the jump or kink inside it"
                     )
                 count = 2 * count - 1
-            kept = int(np.flatnonzero(sizes > tolerance * scale / 10.0).max(initial=0)) + 1
+            kept = int(np.flatnonzero(sizes > allowed[piece] * scale / 10.0).max(initial=0)) + 1
             series.append(coefficients[:kept])
         length = max(part.shape[0] for part in series)
         padded = np.stack([np.pad(part, ((0, length - part.shape[0]), (0, 0))) for part in series])

@@ -365,6 +365,9 @@ class Torsional:
             raise TypeError(f"box must be a Gearbox, got {self.box!r}")
         one_of("arm", self.arm, ("printed", "conjugate"))
         one_of("path", self.path, ("skew_line", "contact_path", "centroid"))
+        if self.arm == "printed" and self.path != "skew_line":
+            path = ContactPath(self.box.drive, self.box.mesh_contact_ratio)
+            path.require_finite_speed(f"path = {self.path!r}")
 
     @property
     def _mesh(self) -> _Mesh:

@@ -90,7 +90,7 @@ def contact_centroid(path: ContactPath) -> PiecewiseChebyshev:
         centroid = path.centroid_on_piece(piece, (2 * fraction - start - end) / (end - start))
         return np.stack([centroid.radius / path.drive.outer_radius, centroid.angle], axis=-1)
 
-    return PiecewiseChebyshev.fit(position, path.breakpoints)
+    return PiecewiseChebyshev.fit(position, path.breakpoints, tolerance=path.fit_tolerances)
 
 
 @lru_cache(maxsize=256)
@@ -117,7 +117,7 @@ def contact_shape(modes: tuple[RadialModes, ...], path: ContactPath) -> Piecewis
         x, angle = np.moveaxis(centroid(fraction), -1, 0)
         return unit_shape(modes, x, angle) / path.drive.outer_radius
 
-    return PiecewiseChebyshev.fit(shape, centroid.breakpoints)
+    return PiecewiseChebyshev.fit(shape, centroid.breakpoints, tolerance=path.fit_tolerances)
 
 
 def rotated(body: Body, shape: PiecewiseChebyshev, angle: float) -> PiecewiseChebyshev:
@@ -224,7 +224,9 @@ class Transverse:
         integer_at_least("stress_harmonics", self.stress_harmonics, 0)
         _ = self.driving_force
         # Fails here rather than at the first use if the contact ratio is not valid.
-        _ = self.mesh_contact_ratio
+        path = ContactPath(self.body.drive, self.mesh_contact_ratio)
+        if self.rate == "total":
+            path.require_finite_speed("rate = 'total'")
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
         if angles.ndim != 1 or angles.size == 0:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")

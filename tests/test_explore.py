@@ -21,7 +21,9 @@ from facegear.explore import (
     unstable,
     view,
 )
+from facegear.floquet import growth_rate
 from facegear.maps import stability_map
+from facegear.models import replace_parameter
 from facegear.parameters import MeshLoad, rad_per_s
 from facegear.plate import Body
 from facegear.transverse import Transverse, shape_vector
@@ -229,12 +231,21 @@ def test_impossible_teeth_are_named():
     study = STUDIES["drive"][0]
     with pytest.raises(ValueError, match="gear_teeth must exceed pinion_teeth=60, got 50"):
         study.model(study.settings({"pinion_teeth": 60, "gear_teeth": 50}))
-    with pytest.raises(
-        ValueError, match="pinion_teeth=18 is too few for gear_teeth=124: the contact lines reach"
-    ):
-        study.model(study.settings({"pinion_teeth": 18, "gear_teeth": 124}))
     with pytest.raises(ValueError, match="bore_radius must"):
         study.model(study.settings({"bore_radius": 200.0, "module": 1.0}))
+
+
+def test_few_teeth_at_a_high_ratio_are_explored():
+    """Contact lines end on the pinion's base circle, where the contact point's speed has no limit."""
+    study = STUDIES["drive"][0]
+    few = study.model(study.settings({"pinion_teeth": 18, "gear_teeth": 124, "pinions": "1"}))
+    values = np.array([0.4, 1.0])
+    chart = reading_map(few, np.array([55.0, 60.0]), "load.stiffness", values)
+    expected = [
+        [growth_rate(replace_parameter(few, "load.stiffness", v).system(speed)) for speed in (55.0, 60.0)]
+        for v in values
+    ]
+    np.testing.assert_allclose(chart.values, expected, atol=1e-5)
 
 
 def test_axes_are_in_si_units_and_cover_the_range():

@@ -90,6 +90,20 @@ def test_the_shaper_cuts_no_point(drive):
 
 
 @drives
+def test_depth_that_the_corner_of_the_tip_cuts(drive):
+    """Against the clearances above, which are arcs by the pitch radius: points lie within the shaper's tip circle."""
+    depth = drive.tip_undercut(41, 4)
+    expected = np.maximum(-clearances(drive, 41).min(axis=(1, 2)), 0.0)
+    expected[expected < 1e-8] = 0.0
+    assert np.count_nonzero(depth) == np.count_nonzero(expected)
+    highest = drive.shaper_tip_radius / drive.pitch_radius
+    assert (depth >= expected * drive.pitch_radius * 0.98).all()
+    assert (depth <= expected * drive.pitch_radius * highest * 1.001).all()
+    with pytest.raises(ValueError, match="along must be at least 2"):
+        drive.tip_undercut(1)
+
+
+@drives
 def test_normals_are_those_of_the_surface_and_point_outwards(drive):
     surface = tooth_surface(drive, 65, 65)
     for points, normals, side in zip(surface.points, surface.normals, (1.0, -1.0), strict=True):

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from facegear.geometry import Drive
 from facegear.kinematics import ContactPath, SkewLine, mesh_period, phase_split
+from tests.independent import meshing_mpmath
 
 CASE_I = Drive(26, 130, 3.175e-3)
 DRIVES = [
@@ -65,18 +66,100 @@ def test_breakpoints_follow_from_the_closed_form_corners():
 
 @each_path
 def test_centroid_is_smooth_on_pieces(path):
-    if len(path.drive.kink_rotations) == 3:
-        # Few teeth: the line's end runs down to the base circle with the square root of time, once a mesh cycle.
-        slow = [
-            chebyshev_tail(path.centroid_on_piece(i, nodes(48)).radius) for i in range(len(path.breakpoints))
-        ]
-        assert 1e-10 < max(slow) < 1e-5
-        return
-    for i in range(len(path.breakpoints)):
+    for i, tolerance in enumerate(path.fit_tolerances):
+        assert tolerance == 1e-13 or path.base_circle_instant is not None
         here = path.centroid_on_piece(i, nodes(48))
-        assert chebyshev_tail(here.radius) < 1e-13
-        assert chebyshev_tail(here.angle) < 1e-13
-        assert chebyshev_tail(path.pair_states_on_piece(i, nodes(48)).length.sum(axis=0)) < 1e-13
+        assert chebyshev_tail(here.radius) < tolerance
+        assert chebyshev_tail(here.angle) < tolerance
+        assert chebyshev_tail(path.pair_states_on_piece(i, nodes(48)).length.sum(axis=0)) < 2 * tolerance
+
+
+def sampled_line(drive, c, count=100_001):
+    """Length and midpoint (radius, angle) of a contact line from points all along the profile, kept where in reach.
+
+    Profile points of the rotated shaper are unwound from the base circle, (3-7) gives their place along its axis;
+    nothing is said about which edges bound the line.
+    """
+    m, g, rb = drive.gear_ratio, drive.shaft_angle, drive.base_radius
+    roll = np.linspace(0.0, math.sqrt((drive.pinion_tip_radius / rb) ** 2 - 1), count)
+    alpha = c + roll
+    along = rb * (1 + m * math.cos(g)) / (m * math.sin(g) * np.cos(alpha))
+    below, across = rb * (np.cos(alpha) + roll * np.sin(alpha)), rb * (np.sin(alpha) - roll * np.cos(alpha))
+    out, height = along * math.sin(g) - below * math.cos(g), along * math.cos(g) + below * math.sin(g)
+    depth = height * math.sin(g) - np.hypot(across, out) * math.cos(g)
+    # The meshing surface turns back at α = 0: what lies beyond is its other branch.
+    edges = [rb * alpha, out - drive.inner_radius, drive.outer_radius - out, depth - drive.tooth_top_distance]
+    room = np.min(edges, axis=0)
+    start, end = room[:-1], room[1:]
+    cut = np.maximum(start, end) / np.where(start * end < 0, np.abs(end - start), 1.0)
+    part = np.where((start >= 0) & (end >= 0), 1.0, np.where((start < 0) & (end < 0), 0.0, cut))
+    steps = np.diff([across, out, height], axis=1)
+    travelled = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=0) * part)])
+    middle = [np.interp(travelled[-1] / 2, travelled, coordinate) for coordinate in (across, out)]
+    return travelled[-1], math.hypot(*middle), math.atan2(*middle)
+
+
+FEW_TEETH = [Drive(20, 160, 3e-3), Drive(18, 90, 3e-3), Drive(16, 48, 3e-3), Drive(13, 26, 3e-3)]
+SKEWED = [Drive(n, 80, 3e-3, shaft_angle=math.radians(s)) for n, s in ((16, 70.0), (16, 110.0), (12, 101.0))]
+
+
+@pytest.mark.parametrize("drive", FEW_TEETH + SKEWED)
+def test_centroid_where_lines_end_on_the_base_circle(drive):
+    """Before and after the instant, and as near to it as 1e-6 of a mesh period."""
+    path = ContactPath(drive)
+    root = path.base_circle_instant
+    entry, sweep = drive.entry_rotation, drive.entry_rotation - drive.exit_rotation
+    for x in (0.7, root - 0.03, root - 1e-4, root - 1e-6, root + 1e-3, root + 0.1):
+        owns = [(x % 1.0 + j) / path.contact_ratio for j in range(path.pairs)]
+        lines = [
+            sampled_line(drive, entry - own * sweep + drive.space_half_angle) for own in owns if 0 < own < 1
+        ]
+        length, radius, angle = np.transpose(lines)
+        centroid = path.centroid(x)
+        assert centroid.radius == pytest.approx((length @ radius) / length.sum(), rel=1e-9)
+        expected = path.angular_travel * (length @ angle) / length.sum()
+        assert centroid.angle == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("drive", FEW_TEETH)
+def test_line_comes_down_to_the_base_circle_with_the_square_root_of_time(drive):
+    """γ = 90°: at cos c = (r_p − a_g)/r_b, as θs = √(2(c − c_b) tan c_b)."""
+    c = math.acos(drive.tooth_top_distance / drive.base_radius)
+    assert drive.base_circle_rotation == pytest.approx(c - drive.space_half_angle, abs=1e-14)
+    for step in (1e-4, 1e-6, 1e-8):
+        lower, _ = drive.contact_region.line_ends(np.array([c + step, c - step]))
+        roll = lower - np.array([c + step, c - step])
+        assert roll[0] == pytest.approx(math.sqrt(2 * step * math.tan(c)), rel=5 * math.sqrt(step))
+        assert roll[1] == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("teeth", [(20, 160), (13, 26)])
+def test_centroid_next_to_the_base_circle_in_thirty_digits(teeth):
+    path = ContactPath(Drive(*teeth, 3e-3))
+    for step in (1e-3, 1e-6):
+        x = path.base_circle_instant - step
+        radius, angle = meshing_mpmath.contact_centroid(
+            meshing_mpmath.Drive(*teeth, "3e-3"), x, path.contact_ratio
+        )
+        assert path.centroid(x).radius == pytest.approx(float(radius), rel=1e-11)
+        assert path.centroid(x).angle == pytest.approx(float(angle) * path.angular_travel, abs=1e-11)
+
+
+def test_pieces_shrink_to_the_base_circle_and_no_others():
+    path = ContactPath(FEW_TEETH[0])
+    widths = np.diff([*path.breakpoints, 1.0])
+    last = np.searchsorted(path.breakpoints, path.base_circle_instant + 1e-15) - 2
+    # An eighth from one to the next, seven eighths of it wide; the last one is what is left.
+    np.testing.assert_allclose(widths[last - 4 : last - 1] / widths[last - 5 : last - 2], 1 / 8, rtol=1e-5)
+    assert widths.min() == widths[last] < 1e-9
+    assert ContactPath(CASE_I).base_circle_instant is None
+    with pytest.raises(
+        ValueError, match=r"pinion_teeth = 20 is too few for a test .* 22 pinion teeth are enough"
+    ):
+        path.require_finite_speed("a test")
+    for ratio in (1.5, 8.0):
+        ContactPath(Drive(22, math.ceil(22 * ratio), 3e-3)).require_finite_speed("a test")
 
 
 @each_path

@@ -12,6 +12,7 @@ from numpy.polynomial import Chebyshev
 
 from facegear.floquet import AdaptiveMagnus, error_estimate, growth_rate, multipliers, transition_matrix
 from facegear.gearboxes import DRIVE, FIGURES, GEAR_INERTIA, PINION_INERTIA
+from facegear.geometry import Drive
 from facegear.kinematics import ContactPath
 from facegear.maps import stability_map
 from facegear.parameters import rad_per_s, rpm
@@ -236,6 +237,16 @@ def test_map_over_teeth_is_that_of_gearboxes_built_anew():
     kept = Torsional(replace(BOX, contact_ratio=DRIVE.contact_ratio))
     wrong = stability_map(kept, speeds, "pinion_teeth", teeth, jobs=1, progress=False)
     assert np.abs(wrong.values - chart.values).max() > 1e-3
+
+
+def test_few_teeth_whose_contact_lines_end_on_the_base_circle():
+    """The mesh damper follows ṙ, which has no limit on the true contact path; the skew line has none of that."""
+    few = replace(BOX, drive=Drive(18, 90, DRIVE.module), pinion_inertia=BOX.pinion_inertia / 4)
+    assert Torsional(few).system(50.0).size == 3
+    assert Torsional(few, arm="conjugate", path="centroid").system(50.0).size == 3
+    for path in ("contact_path", "centroid"):
+        with pytest.raises(ValueError, match=f"pinion_teeth = 18 is too few for path = '{path}'"):
+            Torsional(few, path=path)
 
 
 def test_wrong_kinds():

@@ -344,6 +344,23 @@ class TestTransverse:
         wrong = stability_map(kept, speeds, "pinion_teeth", teeth, jobs=1, progress=False)
         assert np.abs(wrong.values - chart.values).max() > 0.1
 
+    def test_few_teeth_whose_contact_lines_end_on_the_base_circle(self):
+        """Shape from the fit against that at the centroid itself; growth by two integrators."""
+        body = Body(Drive(20, 160, 3.175e-3), thickness_ratio=0.03)
+        few = model(0.7, body=body, pinion_angles=(0.0, 2.0))
+        path = ContactPath(body.drive)
+        x = np.sort(
+            np.concatenate([np.linspace(0.01, 0.99, 23), path.base_circle_instant - np.array([1e-3, 1e-6])])
+        )
+        centroid = path.centroid(x)
+        direct = shape_vector(body, centroid.radius, centroid.angle)
+        np.testing.assert_allclose(few.shapes[0](x), direct, rtol=0, atol=1e-9 * np.abs(direct).max())
+        system = few.system(55.0)
+        by_magnus = growth_rate(system, floquet.AdaptiveMagnus(1e-10))
+        assert growth_rate(system) == pytest.approx(by_magnus, abs=1e-6)
+        with pytest.raises(ValueError, match="pinion_teeth = 20 is too few for rate = 'total'"):
+            replace(few, rate="total")
+
     def test_static_load_on_the_still_disk(self):
         """A pinion spring in parallel with the disk adds its stiffness to k_d at the contact point."""
         transverse = model(0.6)
