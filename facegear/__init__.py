@@ -24,8 +24,8 @@ _PUBLIC = {
     "ContactPath": "kinematics",
     "SkewLine": "kinematics",
     "mesh_period": "kinematics",
-    "PhaseSplit": "kinematics",
-    "phase_split": "kinematics",
+    "PhaseSplit": "phases",
+    "phase_split": "phases",
     # models and maps
     "replace_parameter": "models",
     "stability_map": "maps",

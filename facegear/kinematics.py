@@ -28,8 +28,6 @@ from facegear.parameters import FloatArray
 
 # Breakpoints closer than this, in mesh periods, are the same instant but for rounding.
 _SAME_INSTANT = 1e-12
-# Total angles within this fraction of a pitch of a whole number of teeth count as whole.
-_WHOLE_PITCH = 1e-9
 # Pieces next to a square root: each is so many times shorter than the one before it, the last as short as this.
 _GRADING, _SHORTEST = 8.0, 1e-9
 # Relative error of fits, and how short a piece must be, in mesh periods, before it may have more.
@@ -442,53 +440,3 @@ def mesh_period(drive: Drive, gear_speed: float) -> float:
     """
     speed = parameters.positive("gear_speed", gear_speed, "rad/s")
     return 2.0 * math.pi / (drive.gear_teeth * speed)
-
-
-class PhaseSplit(NamedTuple):
-    """Total angles between pinions split into whole teeth and a phase, shape S (5-1, 5-2).
-
-    Attributes
-    ----------
-    teeth : ndarray of int
-        ΔN2, whole face-gear teeth between the pinions.
-    positioning_angle : ndarray
-        θ_q = ΔN2 θ_N [rad].
-    phasing_angle : ndarray
-        θ_p = θ_c − θ_q, in [0, θ_N) [rad].
-    phase : ndarray
-        ψ = θ_p/θ_N, in [0, 1): the pinion's contact points at t are the first one's at t + ψ T0 (5-4).
-    """
-
-    teeth: NDArray[np.int64]
-    positioning_angle: FloatArray
-    phasing_angle: FloatArray
-    phase: FloatArray
-
-
-def phase_split(drive: Drive, pinion_angles: ArrayLike) -> PhaseSplit:
-    """Split total angles of pinions into positioning and phasing angle, and give their phases (5-1, 5-2).
-
-    Parameters
-    ----------
-    drive : Drive
-    pinion_angles : array_like, shape S
-        θ_c of each pinion from the first one [rad], any real numbers. An angle within 1e-9 of a pitch of a whole
-        number of teeth counts as whole: 120° in radians is not exact.
-
-    Returns
-    -------
-    PhaseSplit
-
-    Raises
-    ------
-    TypeError, ValueError
-        Not numeric or not finite.
-    """
-    angles = parameters.finite_array("pinion_angles", pinion_angles, "rad")
-    pitches = angles / drive.angular_pitch
-    nearest = np.rint(pitches)
-    whole = np.abs(pitches - nearest) < _WHOLE_PITCH
-    teeth = np.where(whole, nearest, np.floor(pitches))
-    phase = np.where(whole, 0.0, pitches - teeth)
-    positioning = teeth * drive.angular_pitch
-    return PhaseSplit(teeth.astype(np.int64), positioning, phase * drive.angular_pitch, phase)

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 
 from facegear.cancellation import Kind, WavePair, interference, phasing_sum, tongue_of, weakened
 from facegear.geometry import Drive
-from facegear.kinematics import phase_split
 from facegear.parallel import computed, parts_of
 from facegear.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
+from facegear.phases import phase_split
 from facegear.reference import variable
 from facegear.rotation import growth_rates_at_angles
 from facegear.tracing import Tongue, tongues

@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.collocation import FreeModes, chain, gauss_rule, panel_edges
 from facegear.disk import coordinates
-from facegear.kinematics import phase_split
 from facegear.parameters import finite_array
 from facegear.periodic import ContactLoad, PeriodicSystem
+from facegear.phases import phase_split
 from facegear.piecewise import Array, merge_breakpoints
 from facegear.transverse import Transverse
 

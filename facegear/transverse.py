@@ -31,7 +31,7 @@ from facegear.disk import (
     unit_shape,
 )
 from facegear.edge_stiffness import Following, driving_force, unit_stiffness
-from facegear.kinematics import ContactPath, checked_contact_ratio, mesh_period, phase_split
+from facegear.kinematics import ContactPath, checked_contact_ratio, mesh_period
 from facegear.parameters import (
     FloatArray,
     MeshLoad,
@@ -42,6 +42,7 @@ from facegear.parameters import (
     within,
 )
 from facegear.periodic import ContactLoad, PeriodicSystem, Rate
+from facegear.phases import phase_split
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body, RadialModes
 

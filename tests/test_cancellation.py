@@ -22,8 +22,8 @@ from facegear.cancellation import (
 )
 from facegear.cases import EXAMPLE_B
 from facegear.disk import disk_matrices
-from facegear.kinematics import phase_split
 from facegear.parameters import rad_per_s
+from facegear.phases import phase_split
 
 DRIVE = EXAMPLE_B.body.drive
 PAIR = WavePair(Wave(0, 2), Wave(1, 0))

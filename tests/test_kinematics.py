@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear.geometry import Drive
-from facegear.kinematics import ContactPath, SkewLine, mesh_period, phase_split
+from facegear.kinematics import ContactPath, SkewLine, mesh_period
 from tests.independent import meshing_mpmath
 
 CASE_I = Drive(26, 130, 3.175e-3)
@@ -286,29 +286,6 @@ def test_mesh_period_is_3_20():
         mesh_period(CASE_I, "1000 rpm")
 
 
-def test_printed_positions_of_pinions_are_whole_teeth():
-    drive = Drive(31, 155, 3.175e-3)
-    assert round(math.degrees(3 * drive.angular_pitch), 2) == 6.97
-    for degrees, teeth in ((90.6, 39), (118.5, 51), (181.2, 78)):
-        assert round(math.degrees(teeth * drive.angular_pitch), 1) == degrees
-    split = phase_split(drive, np.array([39, 51, 78]) * drive.angular_pitch)
-    np.testing.assert_array_equal(split.teeth, [39, 51, 78])
-    np.testing.assert_array_equal(split.phase, 0.0)
-
-
-def test_phase_split_is_5_1_and_5_2():
-    drive = Drive(22, 110, 3.175e-3)
-    split = phase_split(drive, np.radians([0.0, 90.0, 120.0, 180.0, -90.0]))
-    np.testing.assert_array_equal(split.teeth, [0, 27, 36, 55, -28])
-    np.testing.assert_allclose(split.phase, [0.0, 0.5, 2 / 3, 0.0, 0.5], atol=1e-12)
-    total = split.positioning_angle + split.phasing_angle
-    np.testing.assert_allclose(total, np.radians([0.0, 90.0, 120.0, 180.0, -90.0]), atol=1e-12)
-    # 120° in radians times 130/2π is not a whole number by rounding only for tooth numbers divisible by three.
-    whole = phase_split(Drive(24, 120, 3e-3), np.radians([120.0, 240.0, 360.0]))
-    np.testing.assert_array_equal(whole.teeth, [40, 80, 120])
-    np.testing.assert_array_equal(whole.phase, 0.0)
-
-
 @settings(max_examples=25)
 @given(
     pinion=st.integers(14, 60),
@@ -356,8 +333,6 @@ def test_bad_arguments_are_refused():
         path.contact_point(-0.1)
     with pytest.raises(ValueError, match="count must be at least 1"):
         path.overlaid(0, 0.0)
-    with pytest.raises(ValueError, match="pinion_angles must be finite"):
-        phase_split(CASE_I, math.inf)
 
 
 def test_unit_contact_ratio_has_no_centroid_at_the_change():

@@ -15,10 +15,11 @@ from scipy.optimize import linear_sum_assignment
 from facegear import floquet
 from facegear.floquet import growth_rate
 from facegear.geometry import Drive
-from facegear.kinematics import ContactPath, phase_split
+from facegear.kinematics import ContactPath
 from facegear.maps import stability_map
 from facegear.models import replace_parameter
 from facegear.parameters import MeshLoad, rad_per_s
+from facegear.phases import phase_split
 from facegear.plate import Body
 from facegear.symbolic import galerkin
 from facegear.transverse import (
