@@ -17,7 +17,7 @@ settings.load_profile("facegear")
 
 
 # What these files test takes long to make or to read, and is shared.
-FILES_FOR_ONE_WORKER = ("test_pdf.py",)
+FILES_FOR_ONE_WORKER = ("test_pdf.py", "test_small_book.py")
 
 
 def group_of(test: str) -> str:

@@ -337,7 +337,7 @@ def test_links_inside_the_book_lead_somewhere(address: str) -> None:
 def test_buttons_open_files_of_the_repository(address: str) -> None:
     """Launch buttons name files by their path in the repository, where its address is known, and else there are none.
 
-    tests/test_pipeline.py builds pages with and without an address.
+    tests/test_small_book.py builds pages with and without an address.
     """
     repository = os.environ.get("GITHUB_REPOSITORY")
     launched = [

@@ -210,6 +210,7 @@ def test_a_dask_cluster_gives_what_one_process_gives():
 
 
 @pytest.mark.slow
+@pytest.mark.takes(10)
 def test_a_dask_cluster_of_processes_gives_what_one_process_gives():
     distributed = pytest.importorskip("distributed")
     arguments = (TRANSVERSE, rad_per_s(np.linspace(100.0, 1000.0, 20)), "stiffness", [0.5, 1.0, 2.0])
@@ -269,6 +270,7 @@ np.save("{result}", chart.values)
 
 
 @pytest.mark.slow
+@pytest.mark.takes(10)
 def test_two_workers_stopped_by_ctrl_c_lose_only_what_they_were_at(tmp_path):
     kept, result = tmp_path / "kept", tmp_path / "result.npy"
     command = [sys.executable, "-c", LONG_MAP.format(kept=kept.as_posix(), result=result.as_posix())]

@@ -3,23 +3,21 @@
 import contextlib
 import json
 import os
-import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Mapping
-from html import unescape
+from collections.abc import Callable
 from pathlib import Path
-from urllib.parse import SplitResult, parse_qs, urlsplit
 
 import nbformat
 import numpy as np
 import psutil
 import pytest
 
-ROOT = Path(__file__).resolve().parents[1]
+from tests.small_project import ROOT, build, executed, laid_out, write_notebook
+
 RUN = [sys.executable, str(ROOT / "tools" / "run_notebook.py")]
 
 FIGURE = """
@@ -29,18 +27,7 @@ from facegear.reference import variable
 arrays = xr.Dataset({{"y": variable("x", [1.0, {value}], "height", "m", atol=1e-9)}}, {{"x": [0.0, 1.0]}})
 check_figures({{"figure_tiny": arrays}}, "{data}", "{build}")
 """
-CONTENTS = "sections: []\ntables: []\nfigures: []\n"
 ANCHOR = "route: by hand\nanchors:\n- {variable: y, at: {x: 1.0}, value: 2.0, atol: 1.0e-6}\n"
-
-
-def write_notebook(path: Path, *cells: str) -> Path:
-    notebook = nbformat.v4.new_notebook()
-    notebook.metadata.kernelspec = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    notebook.cells = [nbformat.v4.new_markdown_cell(f"# {path.stem}")]
-    notebook.cells += [nbformat.v4.new_code_cell(source) for source in cells]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    nbformat.write(notebook, path)
-    return path
 
 
 def run(notebook: Path) -> subprocess.CompletedProcess[str]:
@@ -113,6 +100,7 @@ def checked(tmp_path: Path) -> Callable[[float], subprocess.CompletedProcess[str
 
 
 @pytest.mark.slow
+@pytest.mark.takes(25)
 def test_missing_reference_wrong_array_and_damaged_reference_stop(
     tmp_path: Path, checked: Callable[[float], subprocess.CompletedProcess[str]]
 ) -> None:
@@ -199,77 +187,7 @@ def test_second_build_waits_for_the_first(tmp_path: Path) -> None:
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """Lay out a project with this one's tools and settings, two small notebooks and one page."""
-    for name in ("dodo.py", "_config.yml", "CITATION.cff"):
-        shutil.copy(ROOT / name, tmp_path)
-    (tmp_path / "uv.lock").write_text("", encoding="utf-8")
-    shutil.copytree(ROOT / "tools", tmp_path / "tools")
-    (tmp_path / "facegear").mkdir()
-    (tmp_path / "facegear" / "module.py").write_text("a = 1\n", encoding="utf-8")
-    (tmp_path / "data").mkdir()
-    (tmp_path / "data" / "contents.yaml").write_text(CONTENTS, encoding="utf-8")
-    book = tmp_path / "book"
-    shutil.copytree(ROOT / "book" / "_assets", book / "_assets", ignore=shutil.ignore_patterns("vendor"))
-    (book / "references.bib").write_text("", encoding="utf-8")
-    (book / "intro.md").write_text("# Page\n", encoding="utf-8")
-    (book / "_toc.yml").write_text(
-        "format: jb-book\nroot: intro\nchapters:\n- file: notebooks/03_one\n- file: notebooks/04_two\n",
-        encoding="utf-8",
-    )
-    write_notebook(tmp_path / "notebooks" / "03_one.ipynb", "print(1)")
-    write_notebook(tmp_path / "notebooks" / "04_two.ipynb", "print(2)")
-    return tmp_path
-
-
-def build(
-    project: Path, *tasks: str, environment: Mapping[str, str] | None = None
-) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, str(project / "tools" / "build.py"), *tasks]
-    # On GitHub the tests must not see the address of the repository they run in.
-    known = {name: value for name, value in os.environ.items() if name != "GITHUB_REPOSITORY"}
-    return subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        check=False,
-        cwd=project,
-        env=known | dict(environment or {}),
-    )
-
-
-def executed(project: Path) -> dict[str, float]:
-    return {path.stem: path.stat().st_mtime for path in (project / "build" / "executed").glob("[!.]*.ipynb")}
-
-
-@pytest.mark.slow
-def test_only_what_changed_is_done_again(project: Path) -> None:
-    page = project / "build" / "_build" / "html" / "notebooks" / "03_one.html"
-    first = build(project)
-    assert first.returncode == 0, first.stderr
-    assert page.as_uri().replace("notebooks/03_one", "index") in first.stdout
-    times, built = executed(project), page.stat().st_mtime
-
-    again = build(project)
-    assert again.returncode == 0
-    assert executed(project) == times
-    assert page.stat().st_mtime == built
-
-    write_notebook(project / "notebooks" / "03_one.ipynb", "print('other')")
-    assert build(project).returncode == 0
-    assert executed(project)["03_one"] > times["03_one"]
-    assert executed(project)["04_two"] == times["04_two"]
-    assert "other" in page.read_text(encoding="utf-8")
-
-    times = executed(project)
-    (project / "data" / "ch04.yaml").write_text("new: 1\n", encoding="utf-8")
-    assert build(project, "notebook").returncode == 0
-    assert executed(project)["03_one"] == times["03_one"]
-    assert executed(project)["04_two"] > times["04_two"]
-
-    times = executed(project)
-    (project / "facegear" / "module.py").write_text("a = 2\n", encoding="utf-8")
-    assert build(project, "notebook").returncode == 0
-    assert all(executed(project)[name] > times[name] for name in times)
+    return laid_out(tmp_path)
 
 
 def inputs_of(project: Path, *notebooks: str) -> list[set[str]]:
@@ -297,56 +215,6 @@ def test_a_drive_file_is_read_by_the_report_on_a_drive_alone(project: Path) -> N
 
 
 @pytest.mark.slow
-def test_buttons_lead_to_files_of_the_repository_where_its_address_is_known(project: Path) -> None:
-    """On GitHub the pages have buttons; in anybody's clone they have none."""
-
-    def links(page: str) -> list[SplitResult]:
-        text = (project / "build" / "_build" / "html" / page).read_text(encoding="utf-8")
-        return [urlsplit(unescape(link)) for link in re.findall(r'href="([^"]+)"', text)]
-
-    def elsewhere(page: str) -> list[SplitResult]:
-        return [link for link in links(page) if link.netloc in ("mybinder.org", "github.com")]
-
-    assert build(project).returncode == 0
-    assert not elsewhere("notebooks/03_one.html")
-    shutil.rmtree(project / "build" / "_build")
-    assert build(project, environment={"GITHUB_REPOSITORY": "someone/facegear"}).returncode == 0
-    buttons = elsewhere("notebooks/03_one.html")
-    (binder,) = [link for link in buttons if link.netloc == "mybinder.org"]
-    assert binder.path == "/v2/gh/someone/facegear/main"
-    assert parse_qs(binder.query) == {"urlpath": ["lab/tree/notebooks/03_one.ipynb"]}
-    assert (project / "notebooks" / "03_one.ipynb").is_file()
-    assert "mybinder.org" not in {link.netloc for link in elsewhere("intro.html")}
-    on_github = [link.path for link in buttons + elsewhere("intro.html") if link.netloc == "github.com"]
-    assert "/someone/facegear" in on_github
-    for path in on_github:
-        if "/blob/" in path or "/edit/" in path:
-            assert (project / re.split("/(?:blob|edit)/main/", path)[1]).is_file(), path
-
-
-@pytest.mark.slow
-def test_warning_of_sphinx_stops_every_build(project: Path) -> None:
-    page = project / "book" / "intro.md"
-    page.write_text("# Page\n\nSee {ref}`nothing-of-this-name`.\n", encoding="utf-8")
-    for _ in range(2):
-        done = build(project)
-        assert done.returncode != 0
-        (line,) = [line for line in done.stderr.splitlines() if line.startswith("FAILED")]
-        assert line.startswith("FAILED intro.md:3: WARNING: undefined label: 'nothing-of-this-name'")
-        assert str(project / "build" / "logs" / "sphinx.txt") in line
-
-
-@pytest.mark.slow
-def test_warning_printed_by_a_notebook_stops_the_build(project: Path) -> None:
-    write_notebook(project / "notebooks" / "03_one.ipynb", "import warnings\nwarnings.warn('look')")
-    done = build(project)
-    assert done.returncode != 0
-    (line,) = [line for line in done.stderr.splitlines() if line.startswith("FAILED")]
-    assert "notebooks/03_one.ipynb" in line
-    assert "stderr" in line
-
-
-@pytest.mark.slow
 def test_failing_notebook_stops_the_book_and_keeps_the_others(project: Path) -> None:
     write_notebook(project / "notebooks" / "03_one.ipynb", "raise RuntimeError('on purpose')")
     done = build(project)
@@ -360,6 +228,7 @@ def test_failing_notebook_stops_the_book_and_keeps_the_others(project: Path) -> 
 
 
 @pytest.mark.slow
+@pytest.mark.takes(15)
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT], ids=lambda how: how.name)
 def test_build_that_is_ended_goes_on_where_it_was(project: Path, how: signal.Signals) -> None:
     started = project / "notebooks" / "started"
@@ -427,6 +296,7 @@ def start(project: Path) -> subprocess.Popen[str]:
 
 
 @pytest.mark.slow
+@pytest.mark.takes(40)
 def test_build_killed_at_any_moment_comes_to_the_same_arrays(
     project: Path, arrays: Callable[[], dict[str, bytes]]
 ) -> None:
@@ -462,6 +332,7 @@ def test_build_killed_at_any_moment_comes_to_the_same_arrays(
 
 
 @pytest.mark.slow
+@pytest.mark.takes(20)
 def test_two_builds_at_once_do_not_disturb_each_other(
     project: Path, arrays: Callable[[], dict[str, bytes]]
 ) -> None:
@@ -480,6 +351,7 @@ def told(project: Path) -> str:
 
 
 @pytest.mark.slow
+@pytest.mark.takes(25)
 def test_references_are_made_anew_only_on_demand_and_say_what_moved(project: Path) -> None:
     def compute(value: float) -> None:
         source = 'data_directory = "../data"\nbuild_directory = "../build"'

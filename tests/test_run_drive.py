@@ -40,6 +40,7 @@ def test_there_are_five_examples():
 
 
 @pytest.mark.slow
+@pytest.mark.takes(20)
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_papermill_makes_the_report_in_any_folder(tmp_path, example):
     shutil.copy(example, tmp_path / "my_drive.yaml")
@@ -82,6 +83,7 @@ def test_papermill_makes_the_report_in_any_folder(tmp_path, example):
 
 
 @pytest.mark.slow
+@pytest.mark.takes(20)
 def test_the_projects_command_leaves_a_page_beside_the_file(tmp_path):
     text = (ROOT / "data" / "drives" / "example_b.yaml").read_text(encoding="utf-8")
     # Stable, and with few modes: the shortest report there is, and one without a tongue.
