@@ -6,6 +6,8 @@ PYTEST  := $(PYTHON) -m pytest
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
+# Modules are compiled once and kept, whatever the caller's shell says; else every notebook would compile them anew.
+export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
 .PHONY: help environment book pdf chapter drive test test-slow test-lowest test-book lint format explorer bench references clean
