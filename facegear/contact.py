@@ -252,8 +252,8 @@ class ContactRegion:
         θs = √(2(c − c_b) tan c_b), and length and midpoint of the line have that square root of time in them.
 
         For γ < 90° the depth rises from θs = 0, by a part cos γ x²/2y² of the way, and the root lies just beyond.
-        For γ > 90° it falls first: the tooth top cuts a sliver out of the line, of up to 0.02 rad, which closes
-        within 1e-4 rad of c and is not taken out here, so that the end jumps over it.
+        For γ > 90° it falls first: the tooth top cuts a sliver out of the line, of up to 0.05 rad at the lowest
+        gear ratios, which closes within 5e-4 rad of c and is not taken out here, so that the end jumps over it.
         """
         if self.tooth_top_distance >= self.base_radius:
             return None
