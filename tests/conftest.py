@@ -33,6 +33,7 @@ def group_of(test: str) -> str:
     return file if file.endswith(FILES_FOR_ONE_WORKER) else test
 
 
+@pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: "Producer") -> "LoadScopeScheduling | None":
     """With `--dist loadscope`, hand out tests by the groups above, in the order in which they were collected."""
     if config.getvalue("dist") != "loadscope":
