@@ -26,6 +26,8 @@ from facegear.stepping import Family
 
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB.
 _STACK_ENTRIES = 1_000_000
+# Angle of a panel to begin with [rad].
+_PANEL_ANGLE = 8.0
 # Rounds of halving after which a family is given up.
 _MOST_ROUNDS = 24
 # Legendre coefficients that tell the size of the accelerations on a panel, and how well they are resolved.
@@ -99,7 +101,7 @@ class Radau:
                 "which Radau panels do not take; use Collocation or AdaptiveMagnus"
             )
         rule = _rule(self.stages)
-        edges = _graded_edges(family.breakpoints, family.fastest_angle)
+        edges = _graded_edges(family, _PANEL_ANGLE, -np.log(self.tolerance))
         panels = _Panels.between(family, rule, edges[:-1], np.diff(edges))
         for _ in range(_MOST_ROUNDS):
             total, error = panels.product()
@@ -120,13 +122,25 @@ class Radau:
         return Radau(min(self.stages + 4, 40), max(self.tolerance / 100.0, 1e-15))
 
 
-def _graded_edges(breakpoints: Array, angle: float) -> Array:
-    """Place the first ends of panels: short after each breakpoint, doubling from there on."""
+def _graded_edges(family: Family, panel_angle: float, dead: float) -> Array:
+    """Place the first ends of panels: short after each breakpoint, longer where fast motions have died.
+
+    Each panel spans `panel_angle` [rad] of the fastest motion, frozen in the middle of the piece, that has not
+    decayed by e^-dead since the breakpoint.
+    """
+    starts = family.breakpoints
+    ends = np.append(starts[1:], 1.0)
+    frozen = np.linalg.eigvals(family.state_matrices((starts + ends) / 2.0))
     parts = []
-    for start, end in zip(breakpoints, np.append(breakpoints[1:], 1.0), strict=True):
-        shortest = min(2.0 * np.pi / angle, end - start)
-        doublings = int(np.ceil(np.log2((end - start) / shortest)))
-        parts.append(start + (end - start) * np.append(0.0, 0.5 ** np.arange(doublings, 0, -1)))
+    for piece, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        rates = frozen[:, piece].ravel()
+        length = end - start
+        death = np.minimum(dead / np.maximum(-rates.real, dead / (2.0 * length)), length)
+        places = np.unique(np.append(death, [0.0, length]))
+        fastest = [np.abs(rates[death >= place]).max() for place in places[1:]]
+        angle = np.append(0.0, np.cumsum(fastest * np.diff(places)))
+        count = max(1, int(np.ceil(angle[-1] / panel_angle)))
+        parts.append(start + np.interp(np.linspace(0.0, angle[-1], count + 1)[:-1], angle, places))
     return np.append(np.concatenate(parts), 1.0)
 
 
@@ -200,25 +214,26 @@ def _solved(family: Family, rule: _Rule, start: Array, length: Array) -> tuple[A
     points[:, -1] -= 4.0 * SAME_INSTANT
     points = points.ravel()
     state = family.state_matrices(points).reshape(len(family.systems), count, m, 2 * n, 2 * n)
-    # y1' = a y2, y2' = L y1 + D y2 with a the same all along.
+    # y1' = a y2, y2' = L y1 + D y2 with a the same all along. Nodes come last but one: y2' of one coordinate at all
+    # nodes stand together, which the long inner loops below like.
     a = state[:, :, 0, 0, n][..., np.newaxis, np.newaxis, np.newaxis]
-    L, D = state[..., n:, :n], state[..., n:, n:]
+    L, D = (np.moveaxis(part, 2, 3) for part in (state[..., n:, :n], state[..., n:, n:]))
     h = length[np.newaxis, :, np.newaxis, np.newaxis, np.newaxis]
-    # Unknown are the y2' of all nodes, (V, P, m, n) for each of 2n states at the start.
-    twice, once = (-matrix[:, np.newaxis, :, np.newaxis] for matrix in (rule.twice, rule.once))
-    left = (h**2 * a * L)[..., np.newaxis, :] * twice
-    left += (h * D)[..., np.newaxis, :] * once
+    # Unknown are the y2' of all nodes, (V, P, n, m) for each of 2n states at the start.
+    left = (h**2 * a * L)[..., np.newaxis] * -rule.twice[:, np.newaxis]
+    left += (h * D)[..., np.newaxis] * -rule.once[:, np.newaxis]
     diagonal = np.arange(m * n)
     left = left.reshape(*L.shape[:2], m * n, m * n)
     left[..., diagonal, diagonal] += 1.0
-    right = np.concatenate([L, h * a * rule.nodes[:, np.newaxis, np.newaxis] * L + D], axis=-1)
+    right = np.concatenate([L, h * a * rule.nodes[:, np.newaxis] * L + D], axis=-1)
     rates = np.linalg.solve(left, right.reshape(*L.shape[:2], m * n, 2 * n))
-    rates = rates.reshape(*L.shape[:2], m, n, 2 * n)
+    rates = rates.reshape(*L.shape[:2], n, m, 2 * n)
+    ends = np.stack([rule.twice[-1], rule.once[-1], *rule.to_legendre[:_LEADING], *rule.to_legendre[-_LAST:]])
+    sums = h * np.moveaxis(ends @ rates, 3, 2)
     steps = np.zeros((*L.shape[:2], 2 * n, 2 * n))
     h, a = h[..., 0], a[..., 0]
-    steps[..., :n, :] = h**2 * a * np.einsum("m,vpmij->vpij", rule.twice[-1], rates)
-    steps[..., n:, :] = h * np.einsum("m,vpmij->vpij", rule.once[-1], rates)
+    steps[..., :n, :] = h * a * sums[:, :, 0]
+    steps[..., n:, :] = sums[:, :, 1]
     steps += np.eye(2 * n)
     steps[..., :n, n:] += (h * a) * np.eye(n)
-    ends = np.concatenate([rule.to_legendre[:_LEADING], rule.to_legendre[-_LAST:]])
-    return steps, h[..., np.newaxis] * np.einsum("km,vpmij->vpkij", ends, rates)
+    return steps, sums[:, :, 2:]
