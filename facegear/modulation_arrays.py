@@ -11,22 +11,22 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from facegear.closing import growth_peaks
-from facegear.floquet import AdaptiveMagnus
 from facegear.gearboxes import DRIVE, ProportionalGearbox
 from facegear.hsu import resonance_bands
 from facegear.modal import standard_form
 from facegear.models import Model, value_of
 from facegear.parameters import FloatArray, integer_at_least, nonnegative, positive, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
+from facegear.radau import Radau
 from facegear.reference import variable
 from facegear.tracing import tongues
 
 _growth = partial(variable, units="1/s", rtol=1e-5, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
 
-# Far below what a figure shows, and several times cheaper than the default.
-_MAP = AdaptiveMagnus(1e-7)
-_FINE = AdaptiveMagnus(1e-9)
+# As in the maps of the chapter. Its errors are smooth along speed, where steps of the adaptive Magnus rule would cut
+# the windows of interpolation short.
+_METHOD = Radau()
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def hsu_errors(resonances: Sequence[tuple[ProportionalGearbox, str]], depths: Ar
                 model,
                 middle - 2.0 * width,
                 middle + 1.2 * width,
-                method=_FINE,
+                method=_METHOD,
                 threshold=1e-7,
                 hints=[middle],
             )
@@ -193,7 +193,7 @@ def openings(
     growth, opened, hsu = [], [], []
     for label, limits in ranges_rpm.items():
         low, high = (float(rad_per_s(limit)) for limit in limits)
-        peaks = growth_peaks(ScaledModulation(model, 1.0), "depth", axis, low, high, method=_MAP)
+        peaks = growth_peaks(ScaledModulation(model, 1.0), "depth", axis, low, high, method=_METHOD)
         growth.append(peaks.growth_rates)
         opened.append(next((c.value for c in peaks.closing_values if not c.closes), np.nan))
         hsu.append(_hsu_growth(model, label, (low + high) / 2.0))

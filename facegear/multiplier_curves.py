@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -89,11 +89,13 @@ class FrozenMotions:
 
     def degree(self, low: float, high: float) -> int:
         """Even degree at which the Chebyshev series of all motions between two values of slowness have ended."""
-        nodes = (low + high) / 2.0 + (high - low) / 2.0 * _lobatto(_LONGEST)
-        motions = np.exp(np.minimum(self.exponents.real, 0.0) * nodes[:, None]) * np.exp(
-            1j * self.exponents.imag * nodes[:, None]
-        )
-        sizes = np.abs(_coefficients(motions)).max(axis=1)
+        half = (high - low) / 2.0
+        # Twice the largest angle is far beyond the last Bessel function that counts.
+        turn = float(np.abs(self.exponents.imag).max()) * half
+        nodes = low + half * (1.0 + _lobatto(min(_LONGEST, 2 * int(turn) + 64)))
+        decaying = np.minimum(self.exponents.real, 0.0) + 1j * self.exponents.imag
+        motions = np.exp(decaying * nodes[:, None])
+        sizes = np.abs(_transform(nodes.size - 1) @ motions).max(axis=1)
         last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
         return max(2 * _LOWEST_DEGREE, 2 * ((last + 2) // 2))
 
@@ -270,14 +272,18 @@ def _lobatto(degree: int) -> Array:
     return np.cos(np.pi * np.arange(degree + 1) / degree)
 
 
-def _coefficients(values: Array) -> Array:
-    """Chebyshev coefficients from values at cos(π j/K) along the first axis."""
-    degree = values.shape[0] - 1
+@lru_cache(maxsize=64)
+def _transform(degree: int) -> Array:
+    """Matrix from values at cos(π j/K) to Chebyshev coefficients, shape (K + 1, K + 1)."""
     ends = np.ones(degree + 1)
     ends[[0, -1]] = 0.5
     order = np.arange(degree + 1)
-    transform = np.cos(np.pi * np.outer(order, order) / degree) * ends * ends[:, None] * (2.0 / degree)
-    return np.tensordot(transform, values, axes=1)
+    return np.cos(np.pi * np.outer(order, order) / degree) * ends * ends[:, None] * (2.0 / degree)
+
+
+def _coefficients(values: Array) -> Array:
+    """Chebyshev coefficients from values at cos(π j/K) along the first axis."""
+    return np.tensordot(_transform(values.shape[0] - 1), values, axes=1)
 
 
 def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:

@@ -17,6 +17,7 @@ from facegear.kinematics import ContactPath
 from facegear.models import Model
 from facegear.modulation_arrays import describe, relative_modulation
 from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
+from facegear.radau import Radau
 from facegear.reference import filled_rows, label_lines, variable
 from facegear.sensitivity import border_derivatives, parameter_value
 from facegear.tracing import Tongue, tongues
@@ -24,9 +25,11 @@ from facegear.tracing import Tongue, tongues
 _growth = partial(variable, units="1/s", rtol=1e-5, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
 
-# Far below what a figure shows, and several times cheaper than the default.
-_MAP = AdaptiveMagnus(1e-7)
-_FINE = AdaptiveMagnus(1e-9)
+# As in the maps of the chapter. Its errors are smooth along speed, where steps of the adaptive Magnus rule would cut
+# the windows of interpolation short.
+_METHOD = Radau()
+# Derivatives are not known to Radau panels; far below what a figure shows, and several times cheaper than the default.
+_DERIVATIVES = AdaptiveMagnus(1e-9)
 
 
 # --- what the text takes for granted ------------------------------------------------------------------------------
@@ -72,7 +75,7 @@ def variant_tongues(models: Mapping[str, ProportionalGearbox], speeds_rpm: tuple
         ``variants``, labels in ``labels``, one line a variant.
     """
     low, high = (float(rad_per_s(limit)) for limit in speeds_rpm)
-    found = [tongues(model, low, high, method=_FINE) for model in models.values()]
+    found = [tongues(model, low, high, method=_METHOD) for model in models.values()]
     orders = np.arange(1, 5)
 
     table = partial(filled_rows, found)
@@ -208,7 +211,7 @@ def levers(cases: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, fl
     widths, centres = [], []
     for case, gearbox in cases.items():
         model = gearbox.torsional
-        for tongue in tongues(model, low, high, method=_FINE):
+        for tongue in tongues(model, low, high, method=_METHOD):
             if tongue.lower <= low or tongue.upper >= high:
                 continue
             values = np.array([parameter_value(model, tongue.peak, name) for name in PARAMETERS])
@@ -238,7 +241,7 @@ def levers(cases: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, fl
 def _border_changes(model: Model, tongue: Tongue) -> FloatArray:
     """Differentiate lower and upper border, shape (2, P)."""
     return np.array(
-        [border_derivatives(model, speed, PARAMETERS, _FINE) for speed in (tongue.lower, tongue.upper)]
+        [border_derivatives(model, speed, PARAMETERS, _DERIVATIVES) for speed in (tongue.lower, tongue.upper)]
     )
 
 
@@ -276,7 +279,7 @@ def closing(
     rows: list[GrowthPeaks] = []
     for label, limits in ranges_rpm.items():
         low, high = (float(rad_per_s(limit)) for limit in limits)
-        rows.append(growth_peaks(model, parameter, axis, low, high, method=_MAP))
+        rows.append(growth_peaks(model, parameter, axis, low, high, method=_METHOD))
         for closing_value in rows[-1].closing_values:
             if closing_value.label != label:
                 raise ArithmeticError(
