@@ -255,15 +255,38 @@ class ContactRegion:
         For γ > 90° it falls first: the tooth top cuts a sliver out of the line, of up to 0.05 rad at the lowest
         gear ratios, which closes within 5e-4 rad of c and is not taken out here, so that the end jumps over it.
         """
+        alpha = self._top_on_base_circle
+        if alpha is None or float(self.radial_position(alpha, 0.0)) <= self.inner_radius:
+            return None
+        return alpha if self.exit < alpha < self.entry else None
+
+    @cached_property
+    def _top_on_base_circle(self) -> float | None:
+        """Local pressure angle where the tooth top meets θs = 0, within the face width or not [rad]."""
         if self.tooth_top_distance >= self.base_radius:
             return None
 
         def excess(alpha: float) -> float:
             return self.tooth_top_distance - float(self.depth(alpha, 0.0))
 
-        alpha = root(excess, 0.0, _STEEPEST)
-        on_flank = self.inner_radius < float(self.radial_position(alpha, 0.0))
-        return alpha if on_flank and self.exit < alpha < self.entry else None
+        return root(excess, 0.0, _STEEPEST)
+
+    @cached_property
+    def square_root(self) -> tuple[float, float] | None:
+        """C of the corner at which a line's end stops following a square root, and C of the root [rad].
+
+        They are one at `base_circle`. Where the inner edge comes a little before it, the root lies beyond the corner,
+        too near for polynomials all the same. None where the tooth top stays outside the base circle.
+        """
+        if self._top_on_base_circle is None:
+            return None
+        if self.base_circle is not None:
+            return self.base_circle, self.base_circle
+        if not self._inner_edge_in_reach:
+            return None
+        roll = self.top_roll(self.inner_radius)
+        corner = self.edge_angle(self.inner_radius, roll) - roll
+        return (corner, self._top_on_base_circle) if roll > 0.0 and self.exit < corner < self.entry else None
 
     # --- whole lines -------------------------------------------------------------------------------------
 

@@ -107,10 +107,6 @@ def checked_contact_ratio(drive: Drive, contact_ratio: float | None) -> float:
     return parameters.within("contact_ratio", ratio, 1.0, float(drive.pinion_teeth), hint=hint)
 
 
-def _pairs_in_mesh(contact_ratio: float) -> int:
-    return math.ceil(contact_ratio)
-
-
 def _merged(instants: list[float]) -> tuple[float, ...]:
     """Fractions of a mesh period in ascending order from 0, without repetitions."""
     fractions = sorted(instant - math.floor(instant) for instant in instants)
@@ -156,7 +152,7 @@ class _TimedPairs(ABC, Generic[States]):
     @property
     def pairs(self) -> int:
         """P = ceil(cr), the greatest number of tooth pairs in mesh at once."""
-        return _pairs_in_mesh(self.contact_ratio)
+        return math.ceil(self.contact_ratio)
 
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
@@ -235,19 +231,28 @@ class ContactPath(_TimedPairs[PairStates]):
         """Fractions of T0 in [0, 1), ascending from 0, between which the positions are smooth.
 
         0 (a pair enters), cr − ⌊cr⌋ (a pair leaves), and the instants where an end of a contact line changes
-        its bounding edge: corners of the contact region, closed forms at γ = 90°.
-
-        With so few teeth that the end of the line comes down to the pinion's base circle (`base_circle_instant`),
-        it does so with the square root of the time that is left. Pieces shrink towards that instant, each to an
-        eighth, so that polynomials follow it on every one of them down to a billionth of T0.
+        its bounding edge: corners of the contact region, closed forms at γ = 90°. With so few teeth that the
+        end of the line comes down to the pinion's base circle (`base_circle_instant`), or nearly so, it does
+        that with the square root of the time that is left. Pieces shrink towards that instant, each to an
+        eighth, so that polynomials follow it on every one of them, down to a billionth of T0.
         """
-        corners = _merged([0.0, self.contact_ratio, *map(self._age, self.drive.kink_rotations)])
-        root = self.base_circle_instant
+        corners = self._corners
+        root = self.drive.contact_region.square_root
         if root is None:
             return corners
-        width = min(gap for gap in ((root - c) % 1.0 or 1.0 for c in corners) if gap > _SAME_INSTANT)
-        count = math.ceil(math.log(width / _SHORTEST, _GRADING))
-        return _merged([*corners, *(root - width / _GRADING**k for k in range(1, count + 1))])
+        instant, beyond = (self._age(c - self.drive.space_half_angle) for c in root)
+        gaps = ((instant - c) % 1.0 or 1.0 for c in corners)
+        width = min(gap for gap in gaps if _SAME_INSTANT < gap < 1.0 - _SAME_INSTANT or len(corners) == 1)
+        # A root further beyond than that is no trouble.
+        count = math.ceil(math.log(width / max(beyond - instant, _SHORTEST), _GRADING))
+        if count <= 2:
+            return corners
+        return _merged([*corners, *(instant - width / _GRADING**k for k in range(1, count + 1))])
+
+    @cached_property
+    def _corners(self) -> tuple[float, ...]:
+        """Fractions of T0 at which a pair enters, leaves, or an end of its line changes edge."""
+        return _merged([0.0, self.contact_ratio, *map(self._age, self.drive.kink_rotations)])
 
     def _age(self, rotation: float) -> float:
         """Mesh periods since entry at a pinion rotation φs."""
@@ -293,10 +298,10 @@ class ContactPath(_TimedPairs[PairStates]):
     def fit_tolerances(self) -> FloatArray:
         """Relative errors that a fit of the positions may have, shape (pieces,) [-].
 
-        On the short pieces next to `base_circle_instant` an error counts by their duration.
+        On the short pieces next to a square root (`breakpoints`) an error counts by their duration.
         """
         widths = np.diff(self.breakpoints, append=1.0)
-        if self.base_circle_instant is None:
+        if self.breakpoints == self._corners:
             return np.full(widths.shape, _TOLERANCE)
         return np.asarray(_TOLERANCE * np.maximum(1.0, _SHORT / widths))
 

@@ -146,6 +146,18 @@ def test_centroid_next_to_the_base_circle_in_thirty_digits(teeth):
         assert path.centroid(x).angle == pytest.approx(float(angle) * path.angular_travel, abs=1e-11)
 
 
+@pytest.mark.parametrize("teeth", [(20, 110), (18, 58), (12, 16)])
+def test_inner_edge_that_comes_just_before_the_base_circle(teeth):
+    """No end on the base circle, no unlimited speed, but a square root just beyond the corner."""
+    drive = Drive(*teeth, 3e-3)
+    path = ContactPath(drive)
+    assert path.base_circle_instant is None
+    path.require_finite_speed("a test")
+    assert 0.0 < drive.contact_region.top_roll(drive.inner_radius) < 0.01
+    for i, tolerance in enumerate(path.fit_tolerances):
+        assert chebyshev_tail(path.centroid_on_piece(i, nodes(65)).radius) < tolerance
+
+
 def test_pieces_shrink_to_the_base_circle_and_no_others():
     path = ContactPath(FEW_TEETH[0])
     widths = np.diff([*path.breakpoints, 1.0])
