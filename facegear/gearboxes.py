@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -94,7 +95,7 @@ class ProportionalGearbox:
         """Mesh periods that a tooth pair stays in mesh: `contact_ratio` if given, else Tregold's (3-23 to 3-26)."""
         return self.gearbox.mesh_contact_ratio
 
-    @property
+    @cached_property
     def gearbox(self) -> Gearbox:
         """The same in SI units."""
         stiffness = mesh_stiffness(DRIVE, self.correction_factor)
@@ -113,7 +114,7 @@ class ProportionalGearbox:
             contact_ratio=self.contact_ratio,
         )
 
-    @property
+    @cached_property
     def torsional(self) -> Torsional:
         """Torsional model of the gearbox."""
         return Torsional(self.gearbox, arm=self.arm, path=self.path)

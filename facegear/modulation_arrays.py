@@ -63,7 +63,7 @@ class ScaledModulation:
         system = self.model.system(speed)
         if any(load.mass > 0.0 for load in system.loads):
             raise ValueError("model must have a constant mass; a load of it has a mass of its own")
-        damping, stiffness = _mean_matrices(system)
+        _, damping, stiffness = (series.mean for series in system.fourier(1))
         scaled = system.replace_loads(
             damping=[self.depth * load.damping for load in system.loads],
             stiffness=[self.depth * load.stiffness for load in system.loads],
@@ -74,22 +74,6 @@ class ScaledModulation:
             damping=system.damping + rest * (damping - system.damping),
             stiffness=system.stiffness + rest * (stiffness - system.stiffness),
         )
-
-
-def _mean_matrices(system: PeriodicSystem) -> tuple[FloatArray, FloatArray]:
-    """Means of C(t) and K(t), by a Gauss rule that is exact for their polynomials."""
-    degree = max(
-        2 * load.shape.degree + (0 if load.weight is None else load.weight.degree) for load in system.loads
-    )
-    x, weight = np.polynomial.legendre.leggauss(degree // 2 + 1)
-    edges = np.append(system.breakpoints, 1.0)
-    half = np.diff(edges) / 2.0
-    points = ((edges[:-1] + half)[:, None] + half[:, None] * x).ravel()
-    share = (half[:, None] * weight).ravel()
-    return (
-        np.asarray(np.tensordot(share, system.damping_matrix(points), axes=1)),
-        np.asarray(np.tensordot(share, system.stiffness_matrix(points), axes=1)),
-    )
 
 
 def undamped(model: ProportionalGearbox) -> ProportionalGearbox:
