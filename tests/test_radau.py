@@ -11,7 +11,8 @@ from facegear.models import replace_parameter
 from facegear.parameters import rad_per_s
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import PiecewiseChebyshev
-from facegear.radau import Radau, _rule
+from facegear.radau import Radau, _graded_edges, _rule
+from facegear.stepping import Family
 from tests.independent.torsional_switching import numbers_of, spectral_radius
 
 
@@ -85,3 +86,18 @@ def test_velocity_kicks_are_refused():
     system = PeriodicSystem([[1.0]], [[0.1]], [[4.0]], (ContactLoad(shape, mass=1.0, rate="total"),), 1.0)
     with pytest.raises(ValueError, match="velocity kicks"):
         floquet.multipliers(system, Radau())
+
+
+@pytest.mark.parametrize("name", ["7.9a", "7.9b", "7.11a", "7.11b", "7.13a"])
+def test_first_panels_suit_what_lives_on_after_a_breakpoint(name):
+    # Motions a thousand times as fast as the mesh die after each breakpoint: no panel may be longer than they ask.
+    figure = FIGURES[name]
+    model = replace_parameter(figure.model(), figure.parameter, figure.lowest)
+    family = Family([model.system(rad_per_s(figure.lowest_rpm * factor)) for factor in (1.0, 1.2)])
+    edges = _graded_edges(family, 8.0, 25.0)
+    assert set(family.breakpoints) <= set(edges)
+    assert edges[-1] == 1.0
+    assert (np.diff(edges) > 0).all()
+    assert edges.size < 80
+    coarse, fine = (rule.scaled_transition_matrices(family) for rule in (Radau(), Radau(24, 1e-14)))
+    assert np.abs(coarse - fine).max() < 1e-11 * max(1.0, np.abs(fine).max())
