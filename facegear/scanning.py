@@ -51,10 +51,13 @@ class Scan:
         added = np.setdiff1d(added[(added > curve.lowest_speed) & (added < curve.highest_speed)], self.speeds)
         if added.size == 0:
             return self
-        together = np.concatenate([self.speeds, added])
-        order = np.argsort(together)
-        radii = np.concatenate([self.radii, curve.spectral_radii(added)])
-        return Scan(together[order], radii[order])
+        return self.with_samples(Scan(added, curve.spectral_radii(added)))
+
+    def with_samples(self, other: Scan) -> Scan:
+        """Return the scan with those samples of another one that lie between its ends, each speed once."""
+        inside = (other.speeds > self.speeds[0]) & (other.speeds < self.speeds[-1])
+        speeds, order = np.unique(np.append(self.speeds, other.speeds[inside]), return_index=True)
+        return Scan(speeds, np.append(self.radii, other.radii[inside])[order])
 
 
 def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) -> Scan:
@@ -62,10 +65,10 @@ def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) ->
     low, high = 1.0 / curve.highest_speed, 1.0 / curve.lowest_speed
     grid = curve.motions.points(_SAMPLE_ANGLE, _FEWEST_SAMPLES)
     seeds = np.concatenate([grid, [1.0 / speed for speed in hints if low < 1.0 / speed < high]])
-    meetings = _meetings(curve, seeds, _steps(grid, seeds), threshold)
-    speeds = np.concatenate([[curve.lowest_speed, curve.highest_speed], 1.0 / grid[1:-1]])
-    scan = Scan(np.sort(speeds), curve.spectral_radii(np.sort(speeds)))
-    scan = scan.with_speeds(curve, 1.0 / np.concatenate([seeds, meetings]))
+    meetings, looked_at = _meetings(curve, seeds, _steps(grid, seeds), threshold)
+    ends = np.array([curve.lowest_speed, curve.highest_speed])
+    scan = Scan(ends, curve.spectral_radii(ends)).with_samples(looked_at)
+    scan = scan.with_speeds(curve, 1.0 / meetings)
     scan = scan.with_speeds(curve, _maxima(curve, scan, threshold))
     return scan.with_speeds(curve, _gaps(curve, scan, threshold))
 
@@ -78,10 +81,13 @@ def _steps(grid: Array, points: Array) -> Array:
     return np.asarray(np.maximum(steps[left], steps[right]))
 
 
-def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: float) -> Array:
-    """Slowness 1/speed where phases of two multipliers meet whose growth there could pass the threshold."""
+def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: float) -> tuple[Array, Scan]:
+    """Slowness 1/speed where phases of two multipliers meet whose growth there could pass the threshold.
+
+    Returns them and all samples that were looked at for it.
+    """
     centres, reach = seeds, _REACH * steps
-    found = []
+    found, speeds, radii = [], [], []
     for _ in range(_ROUNDS):
         parts = [
             _foretold(curve, centres[i : i + _BATCH], reach[i : i + _BATCH], threshold)
@@ -89,6 +95,8 @@ def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: flo
         ]
         meeting = np.concatenate([part[0] for part in parts])
         distance = np.concatenate([part[1] for part in parts])
+        speeds += [part[2].speeds for part in parts]
+        radii += [part[2].radii for part in parts]
         # Neighbours foretell the same meeting: those that agree to a thousandth of the step taken are one.
         keep = _distinct(meeting, np.maximum(1e-3 * distance, 1e-12 * meeting))
         meeting, distance = meeting[keep], distance[keep]
@@ -98,7 +106,7 @@ def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: flo
         centres, reach = meeting[moving], 0.5 * distance[moving]
         if centres.size == 0:
             break
-    return np.concatenate(found)
+    return np.concatenate(found), Scan(np.concatenate(speeds), np.concatenate(radii))
 
 
 def _distinct(points: Array, tolerance: Array) -> Array:
@@ -114,8 +122,10 @@ def _distinct(points: Array, tolerance: Array) -> Array:
     return np.array(kept, dtype=int)
 
 
-def _foretold(curve: MultiplierCurve, centres: Array, reach: Array, threshold: float) -> tuple[Array, Array]:
-    """Meetings of multipliers within `reach` of samples, and their distances from them, both in slowness.
+def _foretold(
+    curve: MultiplierCurve, centres: Array, reach: Array, threshold: float
+) -> tuple[Array, Array, Scan]:
+    """Meetings of multipliers within `reach` of samples, their distances from them, both in slowness, and the samples.
 
     In the eigenvectors of a sample ln(Φ + δ Φ') is diag(λ) + δ G to first order. The block of a pair has the
     exponents (λ_i + λ_j + δ (G_ii + G_jj))/2 ± √D with D = (λ_i − λ_j + δ (G_ii − G_jj))²/4 + δ² G_ij G_ji. D is
@@ -125,9 +135,10 @@ def _foretold(curve: MultiplierCurve, centres: Array, reach: Array, threshold: f
     inside = (1.0 / centres >= curve.lowest_speed) & (1.0 / centres <= curve.highest_speed)
     centres, reach = centres[inside], reach[inside]
     if centres.size == 0:
-        return centres, reach
+        return centres, reach, Scan(centres, centres)
     matrices, slopes = curve.transition_matrices(1.0 / centres), curve.slopes(1.0 / centres)
     values, vectors = np.linalg.eig(matrices)
+    samples = Scan(1.0 / centres, np.abs(values).max(axis=1))
     # Exactly dependent eigenvectors, at a border, have no inverse.
     left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
     forces = left @ slopes @ vectors
@@ -154,7 +165,7 @@ def _foretold(curve: MultiplierCurve, centres: Array, reach: Array, threshold: f
     spread = difference.real**2 + _SAFETY**2 * np.abs(coupling[near]) * step**2
     foretold = np.abs((difference**2 + coupling[near] * step**2).real)
     matters = mean + np.sqrt(np.maximum(spread, foretold)) > threshold
-    return centres[sample[matters]] + step[matters], np.abs(step[matters])
+    return centres[sample[matters]] + step[matters], np.abs(step[matters]), samples
 
 
 def _maxima(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]:
