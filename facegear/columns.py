@@ -2,7 +2,8 @@
 
 The transition matrix is an entire function of stiffness and damping, and analytic in mass ≥ 0 and in every other
 parameter a model depends on smoothly. It is therefore computed at Chebyshev points of the parameter only, and its
-entries are interpolated, with more points until the last coefficients vanish.
+entries are interpolated, with more points until the last coefficients vanish. Where modes decay that much faster than
+the others that their multipliers can never be the largest, only the block of the others is interpolated.
 """
 
 from __future__ import annotations
