@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.collocation import FreeMotion, UnsuitableSystemError
 from facegear.floquet import AdaptiveMagnus, Method, transition_matrices
+from facegear.lobatto import interleaved, lobatto_points, values_to_coefficients
 from facegear.parameters import finite_array
 from facegear.periodic import LoadColumn, PeriodicSystem
 from facegear.piecewise import Array
@@ -236,12 +237,11 @@ class _Series:
         degree = _LOWEST_DEGREE
         if degree + 1 >= points.size or low == high:
             return None
-        nodes = np.cos(np.pi * np.arange(degree + 1) / degree)
-        series = cls(low, high, evaluate((low + high) / 2.0 + (high - low) / 2.0 * nodes))
+        series = cls(low, high, evaluate((low + high) / 2.0 + (high - low) / 2.0 * lobatto_points(degree)))
         while series.tail > tolerance:
             if 2 * series.degree + 1 >= points.size:
                 return None
-            series = cls(low, high, _interleaved(series.values, evaluate(series.between)))
+            series = cls(low, high, interleaved(series.values, evaluate(series.between)))
         return series
 
     @property
@@ -252,13 +252,13 @@ class _Series:
     @property
     def between(self) -> Array:
         """Points that the rule of twice the degree adds, shape (K,)."""
-        nodes = np.cos(np.pi * (np.arange(self.degree) + 0.5) / self.degree)
+        nodes = lobatto_points(2 * self.degree)[1::2]
         return (self.low + self.high) / 2.0 + (self.high - self.low) / 2.0 * nodes
 
     @cached_property
     def coefficients(self) -> Array:
         """Chebyshev coefficients, (K + 1, d, d)."""
-        return _lobatto_coefficients(self.values)
+        return np.tensordot(values_to_coefficients(self.degree), self.values, axes=1)
 
     @property
     def tail(self) -> float:
@@ -281,13 +281,6 @@ class _Series:
         return np.tensordot(basis, self.coefficients, axes=1)
 
 
-def _interleaved(coarse: Array, between: Array) -> Array:
-    """Values at the points of the finer rule from those of the coarser, (K + 1, ...), and the (K, ...) between."""
-    finer = np.empty((coarse.shape[0] + between.shape[0], *coarse.shape[1:]), coarse.dtype)
-    finer[0::2], finer[1::2] = coarse, between
-    return finer
-
-
 def _leading_block(series: _Series, tolerance: float, most: int) -> _Series | None:
     """Blocks with the eigenvalues of largest modulus, r of them, as a series of (r, r) matrices.
 
@@ -308,9 +301,9 @@ def _leading_block(series: _Series, tolerance: float, most: int) -> _Series | No
             return None
         between = series(series.between)
         more_moduli, more_vectors = _ordered_eigenvectors(between)
-        moduli = _interleaved(moduli, more_moduli)
-        vectors = _interleaved(vectors.view(float), more_vectors.view(float)).view(complex)
-        series = replace(series, values=_interleaved(series.values, between))
+        moduli = interleaved(moduli, more_moduli)
+        vectors = interleaved(vectors.view(float), more_vectors.view(float)).view(complex)
+        series = replace(series, values=interleaved(series.values, between))
 
 
 def _ordered_eigenvectors(matrices: Array) -> tuple[Array, ComplexArray]:
@@ -344,13 +337,3 @@ def _blocks(matrices: Array, vectors: ComplexArray) -> Array | None:
     graph = (turned[:, count:] @ np.linalg.inv(turned[:, :count])).real
     first = basis[:, :count].T @ matrices
     return np.asarray(first @ (basis[:, :count] + basis[:, count:] @ graph), dtype=float)
-
-
-def _lobatto_coefficients(values: Array) -> Array:
-    """Chebyshev coefficients from values at cos(π j/K), j = 0 ... K, along the first axis."""
-    degree = values.shape[0] - 1
-    ends = np.ones(degree + 1)
-    ends[[0, -1]] = 0.5
-    order = np.arange(degree + 1)
-    transform = np.cos(np.pi * np.outer(order, order) / degree) * ends * ends[:, None] * (2.0 / degree)
-    return np.tensordot(transform, values, axes=1)

@@ -11,13 +11,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from facegear.disk import unit_shape
-from facegear.inplane import (
-    FASTEST_SPIN,
-    EdgeLoadStress,
-    collocation_points,
-    spin_per_speed,
-    values_to_coefficients,
-)
+from facegear.inplane import FASTEST_SPIN, EdgeLoadStress, collocation_points, spin_per_speed
+from facegear.lobatto import values_to_coefficients
 from facegear.parameters import FloatArray, nonnegative, one_of, positive, within
 from facegear.plate import Body, plate_quadrature
 

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
+from facegear.lobatto import lobatto_points, values_to_coefficients
 from facegear.parameters import FloatArray, finite_array, integer_at_least, one_of, within
 from facegear.plate import Body
 
@@ -89,23 +90,13 @@ def _degree(bore_ratio: float, harmonic: int) -> int:
 @lru_cache(maxsize=1024)
 def collocation_points(degree: int) -> tuple[FloatArray, FloatArray]:
     """Points t_j = cos(πj/degree) and the matrix of derivatives at them."""
-    t = np.cos(np.pi * np.arange(degree + 1) / degree)
+    t = lobatto_points(degree)
     ends = np.ones(degree + 1)
     ends[[0, -1]] = 2.0
     ends *= (-1.0) ** np.arange(degree + 1)
     matrix = np.outer(ends, 1 / ends) / (t[:, None] - t + np.eye(degree + 1))
     # The sum of each row is zero; so its rounding cancels that of the others.
     return t, matrix - np.diag(matrix.sum(axis=1))
-
-
-@lru_cache(maxsize=1024)
-def values_to_coefficients(degree: int) -> FloatArray:
-    """Matrix from values at `collocation_points` to Chebyshev coefficients, shape (degree + 1, degree + 1)."""
-    order = np.arange(degree + 1)
-    ends = np.ones(degree + 1)
-    ends[[0, -1]] = 0.5
-    matrix: FloatArray = np.cos(np.pi * np.outer(order, order) / degree) * np.outer(ends, ends) * (2 / degree)
-    return matrix
 
 
 @lru_cache(maxsize=4096)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from facegear.collocation import UnsuitableSystemError, is_suitable
 from facegear.floquet import AdaptiveMagnus, Collocation, Method, transition_matrices
+from facegear.lobatto import interleaved, lobatto_points, values_to_coefficients
 from facegear.models import Model
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
@@ -92,10 +93,10 @@ class FrozenMotions:
         half = (high - low) / 2.0
         # Twice the largest angle is far beyond the last Bessel function that counts.
         turn = float(np.abs(self.exponents.imag).max()) * half
-        nodes = low + half * (1.0 + _lobatto(min(_LONGEST, 2 * int(turn) + 64)))
+        nodes = low + half * (1.0 + lobatto_points(min(_LONGEST, 2 * int(turn) + 64)))
         decaying = np.minimum(self.exponents.real, 0.0) + 1j * self.exponents.imag
         motions = np.exp(decaying * nodes[:, None])
-        sizes = np.abs(_transform(nodes.size - 1) @ motions).max(axis=1)
+        sizes = np.abs(values_to_coefficients(nodes.size - 1) @ motions).max(axis=1)
         last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
         return max(2 * _LOWEST_DEGREE, 2 * ((last + 2) // 2))
 
@@ -246,15 +247,11 @@ def _windows(
     """Series on one window, or on halves of it where its degree does not suffice."""
     middle, half = (low + high) / 2.0, (high - low) / 2.0
     degree = motions.degree(low, high) // 2
-    values = evaluate(middle + half * _lobatto(degree))
+    values = evaluate(middle + half * lobatto_points(degree))
     for _ in range(_DOUBLINGS + 1):
         if values.shape[0] <= degree:
-            # The points of the coarser rule are every second one of the finer.
-            between = evaluate(middle + half * _lobatto(degree)[1::2])
-            finer = np.empty((degree + 1, *values.shape[1:]))
-            finer[0::2], finer[1::2] = values, between
-            values = finer
-        coefficients = _coefficients(values)
+            values = interleaved(values, evaluate(middle + half * lobatto_points(degree)[1::2]))
+        coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
         tail = np.abs(coefficients[-2:]).max()
         if tail <= _TOLERANCE * max(1.0, float(np.abs(values).max())):
             return [_Window(low, high, coefficients)]
@@ -266,24 +263,6 @@ def _windows(
         )
     halves = ((low, middle), (middle, high))
     return [window for part in halves for window in _windows(evaluate, motions, *part, cuts - 1)]
-
-
-def _lobatto(degree: int) -> Array:
-    return np.cos(np.pi * np.arange(degree + 1) / degree)
-
-
-@lru_cache(maxsize=64)
-def _transform(degree: int) -> Array:
-    """Matrix from values at cos(π j/K) to Chebyshev coefficients, shape (K + 1, K + 1)."""
-    ends = np.ones(degree + 1)
-    ends[[0, -1]] = 0.5
-    order = np.arange(degree + 1)
-    return np.cos(np.pi * np.outer(order, order) / degree) * ends * ends[:, None] * (2.0 / degree)
-
-
-def _coefficients(values: Array) -> Array:
-    """Chebyshev coefficients from values at cos(π j/K) along the first axis."""
-    return np.tensordot(_transform(values.shape[0] - 1), values, axes=1)
 
 
 def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:
