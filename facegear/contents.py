@@ -223,6 +223,10 @@ def compared_equations(text: str) -> tuple[str, ...]:
     return cited_equations(re.sub(rf"\b(?:after|before) {_EQUATION}", "", text))
 
 
+def _named_equations(printed: Iterable[PrintedValue]) -> set[str]:
+    return {number for value in printed for number in compared_equations(value.where)}
+
+
 def bare_equations(contents: Contents, printed: Iterable[PrintedValue]) -> tuple[str, ...]:
     """Equations that neither a row of the ledger names nor the list of contents excuses.
 
@@ -232,7 +236,7 @@ def bare_equations(contents: Contents, printed: Iterable[PrintedValue]) -> tuple
     printed : iterable of PrintedValue
         Their ``where`` names equations by number.
     """
-    named = {number for value in printed for number in compared_equations(value.where)}
+    named = _named_equations(printed)
     excused = {
         number for entry in contents.equations_without_row for number in cited_equations(entry.numbers)
     }
@@ -241,7 +245,7 @@ def bare_equations(contents: Contents, printed: Iterable[PrintedValue]) -> tuple
 
 def equations_as_markdown(contents: Contents, printed: Sequence[PrintedValue]) -> str:
     """How many equations rows of the ledger name, and why the others have none, as text with a Markdown table."""
-    named = {number for value in printed for number in compared_equations(value.where)}
+    named = _named_equations(printed)
     compared = [number for number in contents.equations if number in named]
     bare = bare_equations(contents, printed)
     lines = [
