@@ -190,7 +190,8 @@ def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
         ln(max|α|)/T0 [1/s].
     """
     speeds = np.asarray(rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm")))
-    curve = MultiplierCurve.of(model, float(speeds.min()), float(speeds.max()), METHOD)
+    # A little further than asked for: a single speed is a row as well.
+    curve = MultiplierCurve.of(model, 0.999 * float(speeds.min()), 1.001 * float(speeds.max()), METHOD)
     per_second = speeds * model.gearbox.drive.gear_teeth / (2 * np.pi)
     return np.asarray(np.log(curve.spectral_radii(speeds)) * per_second, dtype=float)
 

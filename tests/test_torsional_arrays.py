@@ -36,6 +36,9 @@ def test_row_is_that_of_single_systems():
     row = arrays.growth_row(model, speeds)
     for index in (0, 17, 63, 119):
         assert row[index] == pytest.approx(growth_rate(model.system(rad_per_s(speeds[index]))), abs=1e-6)
+    assert arrays.growth_row(model, [650.0]) == pytest.approx(
+        [growth_rate(model.system(rad_per_s(650.0)))], abs=1e-6
+    )
 
 
 def test_map_has_the_unstable_cells_of_dop853():
