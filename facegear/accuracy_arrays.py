@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from facegear import floquet
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
-from facegear.reference import variable
+from facegear.reference import text, variable
 
 _error = partial(variable, units="1", rtol=1e-5, atol=1e-11)
 
@@ -141,10 +141,8 @@ def estimates(
     Returns
     -------
     xarray.Dataset
-        ``estimate`` and ``error`` over ``case``; ``method`` (case) is the place of its label among all labels, which
-        the attribute ``labels`` holds.
+        ``estimate`` and ``error`` over ``case``; the labels are in the coordinate ``method``.
     """
-    labels = list(dict.fromkeys(label for label, _ in methods))
     truth = np.linalg.eigvals(integrated_transition_matrix(system))
     radius = np.abs(truth).max()
     found = [np.abs(floquet.multipliers(system, method)[0]) for _, method in methods]
@@ -154,10 +152,10 @@ def estimates(
                 "case", [floquet.error_estimate(system, method) for _, method in methods], "Error estimate"
             ),
             "error": _error("case", np.abs(np.array(found) - radius), "True error of the spectral radius"),
-            "method": variable(
-                "case", [labels.index(label) for label, _ in methods], "Number of the label", "1"
-            ),
         },
-        coords={"case": np.arange(len(methods))},
-        attrs={"parameters": description, "labels": "; ".join(labels)},
+        coords={
+            "case": np.arange(len(methods)),
+            "method": text("case", [label for label, _ in methods], "Label of the method"),
+        },
+        attrs={"parameters": description},
     )

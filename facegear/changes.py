@@ -20,7 +20,7 @@ from facegear.floquet import Method, growth_rate
 from facegear.models import replace_parameter, value_of
 from facegear.multiplier_curves import method_for
 from facegear.parameters import integer_at_least, rpm
-from facegear.reference import variable
+from facegear.reference import text, variable
 from facegear.torsional import Torsional
 from facegear.tracing import Tongue, tongues
 from facegear.transverse import Transverse
@@ -140,7 +140,7 @@ def effects_of_changes(
         Over ``change``, the most effective first: ``width_slope`` [rpm], ``growth_slope`` [1/s] of the unstable width
         and of the strongest tongue's growth for one percent more (of a parameter, of the mesh period for a phase);
         ``width_after`` [rpm], ``growth_after`` [1/s] for ten percent in the better direction, NaN where that was not
-        followed or the model allows no such value. Names in the attribute ``changes``, separated by semicolons.
+        followed or the model allows no such value. Names in the coordinate ``change_name``.
     """
     integer_at_least("followed", followed, 0)
     changes = possible_changes(model) if found else ()
@@ -176,8 +176,11 @@ def effects_of_changes(
                 "change", after[:, 1], "Largest growth rate after ten percent", "1/s", rtol=1e-6, atol=1e-3
             ),
         },
-        coords={"change": np.arange(len(order))},
-        attrs={"parameters": parameters, "changes": "; ".join(changes[i].name for i in order)},
+        coords={
+            "change": np.arange(len(order)),
+            "change_name": text("change", [changes[i].name for i in order], "What is changed"),
+        },
+        attrs={"parameters": parameters},
     )
 
 

@@ -19,7 +19,7 @@ from facegear.models import replace_parameter
 from facegear.parameters import FloatArray, integer_at_least, rpm
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
-from facegear.reference import variable
+from facegear.reference import text, variable
 from facegear.tooth_design import root_stress, root_thickness, tooth_thickness
 from facegear.tracing import tongues
 from facegear.transverse import Transverse, shape_vector
@@ -73,7 +73,7 @@ def family_of_teeth(drives: Sequence[Drive], power: float, pinion_speed: float) 
     -------
     xarray.Dataset
         Over ``pinion_teeth``: ``face_width`` [m]; over (root, pinion_teeth): ``root_stress`` [Pa], ``root`` numbering
-        :data:`ROOTS`.
+        :data:`ROOTS`, which the coordinate ``root_name`` has.
     """
     stress = [
         [root_stress(drive, power, pinion_speed, root_thicknesses(drive)[name]) for drive in drives]
@@ -88,11 +88,14 @@ def family_of_teeth(drives: Sequence[Drive], power: float, pinion_speed: float) 
                 ("root", "pinion_teeth"), stress, "Largest bending stress at the root", "Pa", rtol=1e-9
             ),
         },
-        coords={"pinion_teeth": [drive.pinion_teeth for drive in drives], "root": np.arange(len(ROOTS))},
+        coords={
+            "pinion_teeth": [drive.pinion_teeth for drive in drives],
+            "root": np.arange(len(ROOTS)),
+            "root_name": text("root", ROOTS, "How the root thickness is read"),
+        },
         attrs={
             "parameters": f"power_W = {power:.10g}, pinion_speed = {pinion_speed:.10g}, "
             f"modules_mm = {', '.join(f'{1e3 * drive.module:.8g}' for drive in drives)}",
-            "roots": "; ".join(ROOTS),
         },
     )
 
@@ -111,8 +114,8 @@ def family_of_bodies(designs: Sequence[Sequence[BodyDesign]], highest_rpm: Seque
     -------
     xarray.Dataset
         Over (highest_rpm, pinion_teeth): ``critical_ratio`` [-], ``critical_thickness`` [m], ``nominal_mass`` [kg],
-        ``tip_speed`` [rpm]; over pinion_teeth: ``root_stress`` [Pa]. Labels of the deciding lobes in the attribute
-        ``labels``, one line a speed range.
+        ``tip_speed`` [rpm]; over pinion_teeth: ``root_stress`` [Pa]. Labels of the deciding lobes in the coordinate
+        ``label``.
     """
     both = ("highest_rpm", "pinion_teeth")
     columns = list(zip(*designs, strict=True))
@@ -153,12 +156,14 @@ def family_of_bodies(designs: Sequence[Sequence[BodyDesign]], highest_rpm: Seque
         coords={
             "highest_rpm": list(highest_rpm),
             "pinion_teeth": [row[0].body.drive.pinion_teeth for row in designs],
+            "label": text(
+                both,
+                [[design.critical.lobe.label for design in column] for column in columns],
+                "Label of the deciding lobe",
+            ),
         },
         attrs={
             "parameters": f"modules_mm = {', '.join(f'{1e3 * row[0].body.drive.module:.8g}' for row in designs)}",
-            "labels": "\n".join(
-                " ".join(design.critical.lobe.label for design in column) for column in columns
-            ),
         },
     )
 
@@ -174,8 +179,8 @@ def with_tips(chart: xr.Dataset, lobes: Sequence[Lobe]) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The chart with ``tip_ratio`` [-] and ``tip_speed`` [rpm] over ``tip``; labels in the attribute
-        ``tip_labels``.
+        The chart with ``tip_ratio`` [-] and ``tip_speed`` [rpm] over ``tip``; labels in the coordinate
+        ``tip_label``.
     """
     return chart.assign(
         tip_ratio=variable(
@@ -184,7 +189,7 @@ def with_tips(chart: xr.Dataset, lobes: Sequence[Lobe]) -> xr.Dataset:
         tip_speed=variable(
             "tip", [float(rpm(lobe.speed)) for lobe in lobes], "Speed of the tip", "rpm", atol=_TIP_SPEED
         ),
-    ).assign_attrs(tip_labels=" ".join(lobe.label for lobe in lobes))
+    ).assign_coords(tip_label=text("tip", [lobe.label for lobe in lobes], "Label of the lobe"))
 
 
 def thickness_figure(
@@ -231,8 +236,7 @@ def thickness_figure(
     chart = growth_map(model, slow + (fast - slow) * share, "thickness_ratio", ratios, jobs=jobs)
     places = np.linspace(thin, thick, integer_at_least("sections", sections, 2))
     traced = tongue_sections(model, "thickness_ratio", places, (traced_rpm, fast), jobs=jobs)
-    both = chart.assign(traced.data_vars).assign_attrs(labels=traced.attrs["labels"])
-    return with_tips(both, lobes)
+    return with_tips(chart.assign(traced.data_vars), lobes)
 
 
 def lobe_near_tip(
@@ -393,7 +397,7 @@ def critical_of_variants(
     Returns
     -------
     xarray.Dataset
-        ``critical_ratio`` over (variant, highest_rpm); names in the attribute ``variants``.
+        ``critical_ratio`` over (variant, highest_rpm); names in the coordinate ``variant_name``.
     """
     from joblib import Parallel, delayed
 
@@ -409,12 +413,15 @@ def critical_of_variants(
                 ("variant", "highest_rpm"), values, "Critical thickness ratio h/a", "1", atol=_RATIO
             )
         },
-        coords={"variant": np.arange(len(models)), "highest_rpm": highest_rpm},
+        coords={
+            "variant": np.arange(len(models)),
+            "variant_name": text("variant", list(models), "What is taken otherwise"),
+            "highest_rpm": highest_rpm,
+        },
         attrs={
             "parameters": ", ".join(
                 f"{rpm(lowest_speed):.6g} to {highest:.6g} rpm" for highest in highest_rpm
             ),
-            "variants": "; ".join(models),
         },
     )
 

@@ -18,7 +18,7 @@ from facegear.models import Model, value_of
 from facegear.parameters import FloatArray, integer_at_least, nonnegative, positive, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.radau import Radau
-from facegear.reference import variable
+from facegear.reference import text, variable
 from facegear.tracing import tongues
 
 _growth = partial(variable, units="1/s", rtol=1e-5, atol=1e-3)
@@ -95,7 +95,7 @@ def hsu_errors(resonances: Sequence[tuple[ProportionalGearbox, str]], depths: Ar
     -------
     xarray.Dataset
         Over (resonance, depth): ``lower``, ``upper``, ``hsu_lower``, ``hsu_upper``, ``width`` and ``border_error``,
-        the larger distance of a border from Hsu's [rpm]. Labels in the attribute ``labels``.
+        the larger distance of a border from Hsu's [rpm]. Labels in the coordinate ``label``.
 
     Raises
     ------
@@ -137,10 +137,13 @@ def hsu_errors(resonances: Sequence[tuple[ProportionalGearbox, str]], depths: Ar
             "width": _speed(both, upper - lower, "Width"),
             "border_error": _speed(both, error, "Largest error of Hsu's borders"),
         },
-        coords={"resonance": np.arange(len(resonances)), "depth": axis},
+        coords={
+            "resonance": np.arange(len(resonances)),
+            "label": text("resonance", [label for _, label in resonances], "Label of the resonance"),
+            "depth": axis,
+        },
         attrs={
             "parameters": "; ".join(describe(undamped(gearbox)) for gearbox, _ in resonances),
-            "labels": "; ".join(label for _, label in resonances),
         },
     )
 
@@ -192,8 +195,12 @@ def openings(
                 "resonance", -at_rest / (real - at_rest), "Depth at which it opens after Hsu", "1", atol=1e-8
             ),
         },
-        coords={"resonance": np.arange(len(ranges_rpm)), "depth": axis},
-        attrs={"parameters": describe(model), "labels": "; ".join(ranges_rpm)},
+        coords={
+            "resonance": np.arange(len(ranges_rpm)),
+            "label": text("resonance", list(ranges_rpm), "Label of the resonance"),
+            "depth": axis,
+        },
+        attrs={"parameters": describe(model)},
     )
 
 

@@ -20,7 +20,7 @@ from facegear.geometry import Drive
 from facegear.parallel import computed, parts_of
 from facegear.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
 from facegear.phases import phase_split
-from facegear.reference import variable
+from facegear.reference import text, variable
 from facegear.rotation import growth_rates_at_angles
 from facegear.tracing import Tongue, tongues
 from facegear.transverse import Transverse
@@ -199,9 +199,7 @@ def phase_maps(
 
 def with_tongues(chart: xr.Dataset, tongues_of_sections: xr.Dataset) -> xr.Dataset:
     """Return a map together with traced tongues of some of its lines."""
-    return chart.assign(tongues_of_sections.data_vars).assign_attrs(
-        labels=tongues_of_sections.attrs["labels"]
-    )
+    return chart.assign(tongues_of_sections.data_vars)
 
 
 def traced(
@@ -310,8 +308,8 @@ def array_chart(
     Returns
     -------
     xarray.Dataset
-        ``remaining`` (gear_teeth, layout, wave_number), |S|/p [-]; names of the layouts in the attribute ``layouts``,
-        one a line.
+        ``remaining`` (gear_teeth, layout, wave_number), |S|/p [-]; names of the layouts in the coordinate
+        ``layout_name``.
     """
     table = [
         [
@@ -325,10 +323,10 @@ def array_chart(
         coords={
             "gear_teeth": list(gear_teeth),
             "layout": np.arange(len(layouts)),
+            "layout_name": text("layout", list(layouts), "Pinions and their angles in degrees"),
             "wave_number": list(wave_numbers),
         },
         attrs={
-            "layouts": "\n".join(layouts),
             "parameters": f"angles = {[tuple(a) for a in layouts.values()]}, first order",
         },
     )
@@ -391,10 +389,10 @@ def weak_tongues(
         coords={
             "factor": list(factors),
             "pair": np.arange(len(pairs)),
+            "pair_name": text("pair", list(pairs), "Pair of waves"),
             "layout": np.arange(len(layouts)),
         },
         attrs={
-            "pairs": "\n".join(pairs),
             "parameters": f"{describe(model)}, angles = {[tuple(a) for a in layouts]}, pairs = {tuple(pairs.values())}",
         },
     )
@@ -448,9 +446,11 @@ def interference_curves(
                 ("teeth", "modes", "phase"), table, "|Σ| over Σ|.| of the couplings", "1", atol=1e-7
             )
         },
-        coords={"teeth": list(teeth), "modes": np.arange(len(modes)), "phase": psi},
-        attrs={
-            "modes": "\n".join(f"({k}+{j})" for k, j in modes),
-            "parameters": f"{describe(model)}, {dict(modes)}",
+        coords={
+            "teeth": list(teeth),
+            "modes": np.arange(len(modes)),
+            "mode_pair": text("modes", [f"({k}+{j})" for k, j in modes], "Numbers of the two modes"),
+            "phase": psi,
         },
+        attrs={"parameters": f"{describe(model)}, {dict(modes)}"},
     )

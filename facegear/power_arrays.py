@@ -17,7 +17,7 @@ from facegear.inplane_arrays import described
 from facegear.models import replace_parameter
 from facegear.parameters import FloatArray, finite_array, rad_per_s, rpm
 from facegear.plate import Body
-from facegear.reference import variable
+from facegear.reference import text, variable
 from facegear.transverse import Transverse, coordinates
 from facegear.transverse_arrays import describe, map_family
 
@@ -47,13 +47,14 @@ def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``follower`` and ``dead`` (row, column) [1/(s² N)]; names of the coordinates in the attribute ``basis``.
+        ``follower`` and ``dead`` (row, column) [1/(s² N)]; names of the body's coordinates in ``row_name`` and
+        ``column_name``.
     """
     stress = EdgeLoadStress(body, 1.0, speed, harmonics)
     follower, dead = edge_load_stiffness(stress), edge_load_stiffness(stress, "dead")
     scale = float(np.abs(follower).max())
     number = np.arange(len(follower))
-    names = " ".join(f"({c.nodal_circles},{c.nodal_diameters},{c.wave})" for c in coordinates(body))
+    names = [f"({c.nodal_circles},{c.nodal_diameters},{c.wave})" for c in coordinates(body)]
     return xr.Dataset(
         {
             "follower": variable(
@@ -61,11 +62,13 @@ def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
             ),
             "dead": variable(("row", "column"), dead, "K_f of a dead force", "1/(s2 N)", atol=1e-10 * scale),
         },
-        coords={"row": number, "column": number},
-        attrs={
-            "parameters": described(body, speed=speed, harmonics=harmonics),
-            "basis": names,
+        coords={
+            "row": number,
+            "row_name": text("row", names, "Coordinate: nodal circles, nodal diameters, wave"),
+            "column": number,
+            "column_name": text("column", names, "Coordinate: nodal circles, nodal diameters, wave"),
         },
+        attrs={"parameters": described(body, speed=speed, harmonics=harmonics)},
     )
 
 
@@ -238,7 +241,7 @@ def power_envelope(
     xarray.Dataset
         ``power`` [W] and ``speed`` [rpm] (variant, parameter), the largest power and where stability is lost first;
         infinite and NaN where no limit was found, 0 where the range is not stable without power either. Names of the
-        instabilities in the attribute ``labels``, one line a variant.
+        instabilities in the coordinate ``label``, of the variants in ``variant_name``.
     """
     low, high = (float(rad_per_s(v)) for v in speeds_rpm)
     found = [
@@ -258,13 +261,14 @@ def power_envelope(
                 both, [[rpm(limit.speed) for limit in row] for row in found], "Speed there", "rpm", 0.02
             ),
         },
-        coords={"variant": np.arange(len(models)), parameter: finite_array("values", values)},
+        coords={
+            "variant": np.arange(len(models)),
+            "variant_name": text("variant", list(models), "Variant"),
+            parameter: finite_array("values", values),
+            "label": text(both, [[limit.label for limit in row] for row in found], "What is lost first"),
+        },
         attrs={
             "parameters": "; ".join(f"{name}: {describe_power(model)}" for name, model in models.items())
             + f"; speeds_rpm = {speeds_rpm}, swept = {parameter}",
-            "variants": "\n".join(models),
-            "labels": "\n".join(
-                " ".join((limit.label or "-").replace(" ", "_") for limit in row) for row in found
-            ),
         },
     )

@@ -25,7 +25,7 @@ from facegear.modal import modal_expansion
 from facegear.models import Model, parameter_path
 from facegear.parameters import FloatArray, rad_per_s, rpm
 from facegear.plate import THICKNESS_RATIO_RANGE
-from facegear.reference import variable
+from facegear.reference import text, variable
 from facegear.tooth_design import root_stress, root_thickness
 from facegear.tracing import Tongue
 from facegear.transverse import Transverse, nominal_pinion_mass
@@ -147,8 +147,8 @@ def tongue_table(found: Sequence[Tongue], parameters: str) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Over ``tongue``: ``lower``, ``upper``, ``peak`` [rpm], ``largest_growth`` [1/s]. Labels in the attribute
-        ``labels``, separated by blanks.
+        Over ``tongue``: ``lower``, ``upper``, ``peak`` [rpm], ``largest_growth`` [1/s]. Labels in the coordinate
+        ``label``.
     """
 
     def column(name: str) -> FloatArray:
@@ -161,8 +161,11 @@ def tongue_table(found: Sequence[Tongue], parameters: str) -> xr.Dataset:
             "peak": _peak("tongue", rpm(column("peak")), "Speed of the largest growth"),
             "largest_growth": _growth("tongue", column("growth_rate"), "Largest growth rate of the tongue"),
         },
-        coords={"tongue": np.arange(len(found))},
-        attrs={"parameters": parameters, "labels": " ".join(tongue.label for tongue in found)},
+        coords={
+            "tongue": np.arange(len(found)),
+            "label": text("tongue", [tongue.label for tongue in found], "Label of the tongue"),
+        },
+        attrs={"parameters": parameters},
     )
 
 
@@ -215,7 +218,7 @@ def campbell(model: Model, found: Sequence[Tongue], speeds_rpm: ArrayLike, param
     -------
     xarray.Dataset
         ``mesh_frequency`` (speed_rpm), ``natural_frequency`` (mode, speed_rpm), ``combination`` (label, speed_rpm)
-        [Hz]: (ω_k ± ω_j)/(2πs), NaN where a mode does not oscillate. Labels in the attribute ``labels``.
+        [Hz]: (ω_k ± ω_j)/(2πs), NaN where a mode does not oscillate; ``label`` is text.
     """
     speeds = np.asarray(speeds_rpm, dtype=float)
     systems = [model.system(float(speed)) for speed in rad_per_s(speeds)]
@@ -244,9 +247,9 @@ def campbell(model: Model, found: Sequence[Tongue], speeds_rpm: ArrayLike, param
         coords={
             "speed_rpm": speeds,
             "mode": np.arange(1, len(natural) + 1),
-            "label": np.arange(len(combined)),
+            "label": text("label", list(kinds), "Label of the combination"),
         },
-        attrs={"parameters": parameters, "labels": " ".join(kinds)},
+        attrs={"parameters": parameters},
     )
 
 
@@ -359,11 +362,9 @@ def tongue_columns(tables: Mapping[str, xr.Dataset]) -> Columns:
         "peak": "peak_rpm",
         "largest_growth": "growth_per_s",
     }
-    labels = [str(table.attrs["labels"]).split() for table in tables.values()]
     return {
         "model": _repeated(tables, "tongue"),
-        "tongue": [label for row in labels for label in row],
-        **_stacked(tables, headings),
+        **_stacked(tables, {"label": "tongue", **headings}),
     }
 
 
@@ -383,11 +384,9 @@ def change_columns(tables: Mapping[str, xr.Dataset]) -> Columns:
         "width_after": "width_after_ten_percent_rpm",
         "growth_after": "growth_after_ten_percent_per_s",
     }
-    names = [str(table.attrs["changes"]).split("; ")[: table.sizes["change"]] for table in tables.values()]
     return {
         "model": _repeated(tables, "change"),
-        "change": [name for row in names for name in row],
-        **_stacked(tables, headings),
+        **_stacked(tables, {"change_name": "change", **headings}),
     }
 
 

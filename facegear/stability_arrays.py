@@ -23,7 +23,7 @@ from facegear.hsu import ResonanceBand, resonance_bands
 from facegear.parameters import finite_array, integer_at_least
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
-from facegear.reference import variable
+from facegear.reference import text, variable
 
 _growth = partial(variable, units="1/s", atol=1e-6)
 _frequency = partial(variable, units="rad/s", atol=1e-9)
@@ -322,7 +322,7 @@ def bands(
     -------
     xarray.Dataset
         ``lower``, ``upper``, ``centre`` [rad/s] over (band, depth), NaN where damping closes the band; labels like
-        "(1+2)/1" in the attribute ``labels``.
+        "(1+2)/1" in the coordinate ``label``.
     """
     found: list[dict[str, ResonanceBand]] = [
         {band.label: band for band in resonance_bands(system_at_depth(float(depth)), order=order)}
@@ -342,8 +342,12 @@ def bands(
             "upper": _frequency(both, table("upper"), "Upper border of the band"),
             "centre": _frequency(both, table("centre"), "Combination of natural frequencies over s"),
         },
-        coords={"band": np.arange(1, len(labels) + 1), "depth": list(depths)},
-        attrs={"parameters": description, "labels": "; ".join(labels)},
+        coords={
+            "band": np.arange(1, len(labels) + 1),
+            "label": text("band", labels, "Label of the band"),
+            "depth": list(depths),
+        },
+        attrs={"parameters": description},
     )
 
 

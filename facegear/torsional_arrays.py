@@ -24,7 +24,7 @@ from facegear.multiplier_curves import MultiplierCurve
 from facegear.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.radau import Radau
-from facegear.reference import filled_rows, label_lines, variable
+from facegear.reference import filled_labels, filled_rows, text, variable
 from facegear.tracing import borders, tongues
 
 METHOD = Radau()
@@ -257,8 +257,8 @@ def stability_figure(
     xarray.Dataset
         ``growth_rate`` as :func:`growth_map`; ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] of
         the tongues over (section, tongue); ``hsu_lower``, ``hsu_upper`` and ``hsu_centre`` [rpm] over (section,
-        band); NaN beyond the tongues and bands of a section. Labels in the attributes ``labels`` and
-        ``hsu_labels``, one line a section, separated by blanks.
+        band); NaN beyond the tongues and bands of a section. Labels in the coordinates ``label`` and
+        ``hsu_label``, empty there.
     """
     columns = integer_at_least("columns", columns, 2)
     speeds = np.linspace(figure.lowest_rpm, HIGHEST_SPEED_RPM, columns)
@@ -266,9 +266,7 @@ def stability_figure(
     places = axis_values(figure, 2 * integer_at_least("sections", sections, 1) + 1)[1::2]
     traced = traced_sections(figure, places, jobs=jobs)
     hsu = hsu_sections(figure, places)
-    return chart.assign({**traced.data_vars, **hsu.data_vars}).assign_attrs(
-        labels=traced.attrs["labels"], hsu_labels=hsu.attrs["hsu_labels"]
-    )
+    return chart.assign({**traced.data_vars, **hsu.data_vars})
 
 
 def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2) -> xr.Dataset:
@@ -284,8 +282,8 @@ def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2
     Returns
     -------
     xarray.Dataset
-        ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] over (section, tongue); attribute
-        ``labels``.
+        ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] over (section, tongue); coordinate
+        ``label``.
     """
     low, high = rad_per_s(figure.lowest_rpm), rad_per_s(HIGHEST_SPEED_RPM)
     found = [
@@ -301,8 +299,10 @@ def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2
             "peak": variable(both, rpm(tables["peak"]), "Speed of the largest growth", "rpm", atol=0.1),
             "largest_growth": _growth(both, tables["growth_rate"], "Largest growth rate of the tongue"),
         },
-        coords={"section": np.asarray(values, dtype=float)},
-        attrs={"labels": label_lines(found)},
+        coords={
+            "section": np.asarray(values, dtype=float),
+            "label": text(both, filled_labels(found), "Label of the tongue"),
+        },
     )
 
 
@@ -345,7 +345,7 @@ def hsu_sections(figure: TorsionalFigure, values: ArrayLike) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``hsu_lower``, ``hsu_upper`` and ``hsu_centre`` [rpm] over (section, band); attribute ``hsu_labels``.
+        ``hsu_lower``, ``hsu_upper`` and ``hsu_centre`` [rpm] over (section, band); coordinate ``hsu_label``.
     """
     array = finite_array("values", values)
     span = (figure.lowest_rpm, HIGHEST_SPEED_RPM)
@@ -358,9 +358,8 @@ def hsu_sections(figure: TorsionalFigure, values: ArrayLike) -> xr.Dataset:
         "centre": "Speed at which natural frequencies combine",
     }
     return xr.Dataset(
-        {f"hsu_{name}": _speed(both, rpm(filled_rows(found, name)), text) for name, text in names.items()},
-        coords={"section": array},
-        attrs={"hsu_labels": label_lines(found)},
+        {f"hsu_{name}": _speed(both, rpm(filled_rows(found, name)), what) for name, what in names.items()},
+        coords={"section": array, "hsu_label": text(both, filled_labels(found), "Label of the band")},
     )
 
 
@@ -378,7 +377,7 @@ def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
     xarray.Dataset
         Over ``resonance``, ascending by speed: ``floquet``, ``hsu`` and ``blocks`` (resonance, border) [rpm], lower
         and upper border after Floquet, Hsu's pairs and Hsu's method with all frequencies in resonance together; NaN
-        where a method finds none; ``largest_growth`` [1/s]. Labels in the attribute ``labels``; a second tongue of
+        where a method finds none; ``largest_growth`` [1/s]. Labels in the coordinate ``label``; a second tongue of
         the same modes and order has a prime.
     """
     model = replace_parameter(figure.model(), figure.parameter, value)
@@ -395,16 +394,20 @@ def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
         {
             **{
                 name: _speed(
-                    ("resonance", "border"), [bands[name].get(label, nothing) for label in labels], text
+                    ("resonance", "border"), [bands[name].get(label, nothing) for label in labels], what
                 )
-                for name, text in names.items()
+                for name, what in names.items()
             },
             "largest_growth": _growth(
                 "resonance", [growth.get(label, np.nan) for label in labels], "Growth rate"
             ),
         },
-        coords={"resonance": np.arange(len(labels)), "border": [0, 1]},
-        attrs={"parameters": f"{describe(model)}", "labels": " ".join(labels)},
+        coords={
+            "resonance": np.arange(len(labels)),
+            "label": text("resonance", labels, "Label of the resonance"),
+            "border": [0, 1],
+        },
+        attrs={"parameters": f"{describe(model)}"},
     )
 
 
@@ -433,7 +436,7 @@ def intervals(table: xr.Dataset, method: str) -> dict[str, tuple[float, float]]:
     dict of str to (float, float)
         Lower and upper border [rpm].
     """
-    rows = zip(table.attrs["labels"].split(), table[method].values.tolist(), strict=True)
+    rows = zip(table["label"].values.tolist(), table[method].values.tolist(), strict=True)
     return {label: (low, high) for label, (low, high) in rows if np.isfinite(low)}
 
 
@@ -452,8 +455,7 @@ def section_intervals(chart: xr.Dataset, label: str) -> dict[float, tuple[float,
         Value of the swept parameter to lower and upper border [rpm], where the tongue exists.
     """
     found = {}
-    for number, line in enumerate(chart.attrs["labels"].split("\n")):
-        labels = line.split()
+    for number, labels in enumerate(chart["label"].values.tolist()):
         if label in labels:
             place = labels.index(label)
             found[float(chart["section"][number])] = (

@@ -18,7 +18,7 @@ from facegear.models import Model
 from facegear.modulation_arrays import describe, relative_modulation
 from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
 from facegear.radau import Radau
-from facegear.reference import filled_rows, label_lines, variable
+from facegear.reference import filled_labels, filled_rows, text, variable
 from facegear.sensitivity import border_derivatives, parameter_value
 from facegear.tracing import Tongue, tongues
 
@@ -71,8 +71,8 @@ def variant_tongues(models: Mapping[str, ProportionalGearbox], speeds_rpm: tuple
     -------
     xarray.Dataset
         ``lower``, ``upper`` [rpm] and ``largest_growth`` [1/s] over (variant, tongue), NaN beyond the tongues of a
-        variant; ``modulation`` over (variant, order) from :func:`relative_modulation`. Names in the attribute
-        ``variants``, labels in ``labels``, one line a variant.
+        variant; ``modulation`` over (variant, order) from :func:`relative_modulation`. Names in the
+        coordinate ``variant_name``, labels in ``label``.
     """
     low, high = (float(rad_per_s(limit)) for limit in speeds_rpm)
     found = [tongues(model, low, high, method=_METHOD) for model in models.values()]
@@ -92,13 +92,13 @@ def variant_tongues(models: Mapping[str, ProportionalGearbox], speeds_rpm: tuple
         },
         coords={
             "variant": np.arange(len(found)),
+            "variant_name": text("variant", list(models), "What is taken otherwise"),
+            "label": text(both, filled_labels(found), "Label of the tongue"),
             "tongue": np.arange(table("lower").shape[1]),
             "order": orders,
         },
         attrs={
             "parameters": describe(next(iter(models.values()))),
-            "variants": "; ".join(models),
-            "labels": label_lines(found),
         },
     )
 
@@ -202,11 +202,11 @@ def levers(cases: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, fl
     -------
     xarray.Dataset
         Over (tongue, parameter): ``width_change``, percent of its width a tongue gains for a percent of the
-        parameter, and ``centre_change``, the same for its middle; over tongue: ``lower``, ``upper`` [rpm]. Names in the
-        attribute ``tongues``.
+        parameter, and ``centre_change``, the same for its middle; over tongue: ``lower``, ``upper`` [rpm]. Case and
+        label in the coordinates ``case_name`` and ``label``.
     """
     low, high = (float(rad_per_s(limit)) for limit in speeds_rpm)
-    names: list[str] = []
+    names: list[tuple[str, str]] = []
     borders_found: list[tuple[float, float]] = []
     widths, centres = [], []
     for case, gearbox in cases.items():
@@ -216,7 +216,7 @@ def levers(cases: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, fl
                 continue
             values = np.array([parameter_value(model, tongue.peak, name) for name in PARAMETERS])
             at = _border_changes(model, tongue) * values
-            names.append(f"{case}: {tongue.label}")
+            names.append((case, tongue.label))
             borders_found.append((tongue.lower, tongue.upper))
             widths.append((at[1] - at[0]) / tongue.width)
             centres.append((at[1] + at[0]) / (tongue.lower + tongue.upper))
@@ -230,10 +230,14 @@ def levers(cases: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, fl
             "lower": _speed("tongue", lower, "Lower border"),
             "upper": _speed("tongue", upper, "Upper border"),
         },
-        coords={"tongue": np.arange(len(names)), "parameter": np.arange(len(PARAMETERS))},
+        coords={
+            "tongue": np.arange(len(names)),
+            "case_name": text("tongue", [case for case, _ in names], "Gearbox"),
+            "label": text("tongue", [label for _, label in names], "Label of the tongue"),
+            "parameter": np.arange(len(PARAMETERS)),
+        },
         attrs={
             "parameters": "; ".join(f"{name}: {describe(case)}" for name, case in cases.items()),
-            "tongues": "; ".join(names),
         },
     )
 
@@ -303,9 +307,13 @@ def closing(
             "closing_speed": variable(both, speeds, "Speed of the peak there", "rpm", atol=0.01),
             "closes": variable(both, closes, "1 closes, -1 opens", "1"),
         },
-        coords={"tongue": np.arange(len(rows)), "root": np.arange(most), "damping": axis},
+        coords={
+            "tongue": np.arange(len(rows)),
+            "label": text("tongue", list(ranges_rpm), "Label of the tongue"),
+            "root": np.arange(most),
+            "damping": axis,
+        },
         attrs={
             "parameters": f"{describe(model)}, swept = {parameter}",
-            "labels": "; ".join(ranges_rpm),
         },
     )

@@ -19,7 +19,7 @@ from facegear.hsu import band_speeds
 from facegear.maps import stability_map
 from facegear.models import replace_parameter
 from facegear.parameters import integer_at_least, rad_per_s, rpm
-from facegear.reference import filled_rows, label_lines, variable
+from facegear.reference import filled_labels, filled_rows, text, variable
 from facegear.tracing import Tongue, borders, tongues
 from facegear.transverse import Transverse, reference_stiffness
 
@@ -238,7 +238,7 @@ def stability_figure(
     chart = growth_map(model, highest_rpm * share, parameter, highest * share, jobs=jobs)
     places = highest * (np.arange(integer_at_least("sections", sections, 1)) + 0.5) / sections
     traced = tongue_sections(model, parameter, places, (traced_rpm, highest_rpm), jobs=jobs)
-    return chart.assign(traced.data_vars).assign_attrs(labels=traced.attrs["labels"])
+    return chart.assign(traced.data_vars)
 
 
 def tongue_table(found: Sequence[Sequence[Tongue]], values: ArrayLike, parameters: str) -> xr.Dataset:
@@ -253,10 +253,13 @@ def tongue_table(found: Sequence[Sequence[Tongue]], values: ArrayLike, parameter
             "peak": variable(both, rpm(table("peak")), "Speed of the largest growth", "rpm", atol=0.1),
             "largest_growth": _growth(both, table("growth_rate"), "Largest growth rate of the tongue"),
         },
-        coords={"section": np.asarray(values, dtype=float), "tongue": np.arange(table("lower").shape[1])},
+        coords={
+            "section": np.asarray(values, dtype=float),
+            "tongue": np.arange(table("lower").shape[1]),
+            "label": text(both, filled_labels(found), "Label of the tongue"),
+        },
         attrs={
             "parameters": parameters,
-            "labels": label_lines(found),
         },
     )
 
@@ -372,9 +375,12 @@ def hsu_bands(
             "upper": _speed(both, tables["upper"], "Upper border after Hsu"),
             "centre": _speed(both, tables["centre"], "Speed at which frequencies of the mean system combine"),
         },
-        coords={"section": list(values), "band": np.arange(tables["lower"].shape[1])},
+        coords={
+            "section": list(values),
+            "band": np.arange(tables["lower"].shape[1]),
+            "label": text(both, filled_labels(rows), "Label of the band"),
+        },
         attrs={
             "parameters": f"{describe(model)}, swept = {parameter}",
-            "labels": label_lines(rows),
         },
     )

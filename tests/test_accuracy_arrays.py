@@ -55,4 +55,4 @@ def test_estimates_are_not_below_the_true_errors():
     methods = [("aligned", floquet.AlignedStepwise(32)), ("uniform", floquet.Stepwise(512))]
     data = accuracy_arrays.estimates(GEARS, methods, "gears")
     assert (data.estimate.values >= data.error.values).all()
-    assert data.attrs["labels"] == "aligned; uniform"
+    assert data["method"].values.tolist() == ["aligned", "uniform"]

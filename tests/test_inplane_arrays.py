@@ -89,7 +89,7 @@ def test_disk_alone(tmp_path):
 def test_stiffness_table(tmp_path):
     data = power_arrays.stiffness_table(CASE_1, 50.0, 5)
     check_round_trip(data, tmp_path)
-    assert data.attrs["basis"].split()[:3] == ["(0,0,cos)", "(1,0,cos)", "(0,1,cos)"]
+    assert data["row_name"].values.tolist()[:3] == ["(0,0,cos)", "(1,0,cos)", "(0,1,cos)"]
     np.testing.assert_allclose(data["dead"], data["dead"].T, atol=1e-12 * float(np.abs(data["dead"]).max()))
 
 
@@ -122,7 +122,7 @@ def test_envelope_of_two_variants(tmp_path):
     check_round_trip(data, tmp_path)
     assert float(data["power"][0, 0]) == 0.0
     assert 0.0 < float(data["power"][1, 0]) < watt(300.0)
-    assert len(data.attrs["labels"].split("\n")) == 2
+    assert data["label"].shape == data["power"].shape
     drawing = draw.envelope({"Case I": data}, {"Case I": float(watt(113.0))}, "stiffness")
     assert "disk alone" in texts(drawing)
     unlimited = data.copy(deep=True)

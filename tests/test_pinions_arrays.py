@@ -79,7 +79,7 @@ def test_another_tooth_count_has_its_own_contact_ratio():
 def test_tooth_counts_find_the_tongues_of_each(tmp_path):
     table = arrays.tooth_counts(EXAMPLE_B, 180.0, [24, 31], (800.0, 950.0), jobs=1)
     check_round_trip(table, tmp_path)
-    assert table.attrs["labels"].split("\n") == ["", "(2+9)/1"]
+    assert reference.label_rows(table["label"]) == [[], ["(2+9)/1"]]
     assert np.isnan(table["lower"].values[0]).all()
     # A printed statement: stable there, whatever the traced borders are of the other.
     assert "(c) 180" in texts(draw.tooth_counts({"(c) 180": table}))
@@ -108,7 +108,7 @@ def test_small_arrays_survive_their_files_and_are_drawn(chart, tongues, tmp_path
     zones = (300.0, 700.0)
     assert "phase" in texts(draw.phase_relation(relation))
     shown = texts(draw.angle_maps({"(b) B": chart}, {"(b) B": (850.0, 870.0)}, 1.0))
-    assert tongues.attrs["labels"].split()[0] in shown
+    assert tongues["label"].values[0, 0] in shown
     assert "close-up" in shown
     assert "III" in texts(draw.positions(chart, (850.0, 870.0)))
     over_phase = chart.rename(total_angle="phase")

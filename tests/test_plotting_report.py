@@ -11,13 +11,12 @@ def tongues(lower, upper, labels):
     count = np.arange(len(lower))
     return xr.Dataset(
         {"lower": ("tongue", lower), "upper": ("tongue", upper)},
-        coords={"tongue": count},
-        attrs={"labels": labels},
+        coords={"tongue": count, "label": ("tongue", np.array(labels, dtype=str))},
     )
 
 
-NONE = tongues([], [], "")
-TWO = tongues([200.0, 600.0], [220.0, 700.0], "(1+1)/1 (1+2)/1")
+NONE = tongues([], [], [])
+TWO = tongues([200.0, 600.0], [220.0, 700.0], ["(1+1)/1", "mean 2"])
 SPEEDS = np.linspace(100.0, 1000.0, 10)
 
 
@@ -34,11 +33,10 @@ def test_campbell_marks_every_tongue_on_the_mesh_frequency(table):
             "natural_frequency": (("mode", "speed_rpm"), np.full((3, 10), 150.0)),
             "combination": (("label", "speed_rpm"), np.full((count, 10), 400.0)),
         },
-        coords={"speed_rpm": SPEEDS},
-        attrs={"labels": table.attrs["labels"]},
+        coords={"speed_rpm": SPEEDS, "label": table["label"].values},
     )
     (ax,) = draw.campbell(data, table).axes
-    assert texts(ax) == table.attrs["labels"].split()
+    assert texts(ax) == table["label"].values.tolist()
     drawn = [line.get_xydata() for line in ax.lines if line.get_linewidth() == 5 and len(line.get_xdata())]
     np.testing.assert_allclose(
         np.array(drawn).reshape(count, 4),
@@ -76,14 +74,15 @@ def test_strips_are_red_where_it_is_unstable():
 
 
 def test_a_tongue_too_narrow_to_see_is_a_line_wide():
-    (ax,) = draw.speed_strips({"one": tongues([500.0], [500.001], "(1+1)/1")}, (100.0, 1000.0)).axes
+    (ax,) = draw.speed_strips({"one": tongues([500.0], [500.001], ["(1+1)/1"])}, (100.0, 1000.0)).axes
     assert ax.patches[1].get_width() == pytest.approx(1.8)
 
 
 def test_changes_are_green_where_more_is_better():
-    data = xr.Dataset({"width_slope": ("change", [-3.0, 2.0])}, attrs={"changes": "mass; damping"})
+    slopes = {"width_slope": ("change", [-3.0, 2.0])}
+    data = xr.Dataset(slopes, coords={"change_name": ("change", ["mass; total", "damping"])})
     (ax,) = draw.changes(data).axes
-    assert [label.get_text() for label in ax.get_yticklabels()] == ["mass", "damping"]
+    assert [label.get_text() for label in ax.get_yticklabels()] == ["mass; total", "damping"]
     assert [bar.get_width() for bar in ax.patches] == [-3.0, 2.0]
     better, worse = (bar.get_facecolor() for bar in ax.patches)
     assert better[1] > better[0]

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -63,7 +64,7 @@ def test_flutter_needs_damping_to_be_kept_off():
 def test_tongues_and_windows_share_out_the_range():
     table = report.tongue_table(FOUND, "case 1")
     windows = report.safe_windows(table, RANGE)
-    assert table.attrs["labels"].split() == [tongue.label for tongue in FOUND]
+    assert table["label"].values.tolist() == [tongue.label for tongue in FOUND]
     ends = np.sort(np.concatenate([part[side] for part in (table, windows) for side in ("lower", "upper")]))
     assert ends[[0, -1]] == pytest.approx([500.0, 720.0])
     np.testing.assert_allclose(ends[1:-1:2], ends[2:-1:2])
@@ -87,7 +88,7 @@ def test_combinations_cross_the_mesh_frequency_in_their_tongues():
     chart = report.campbell(CASE_1.transverse, FOUND, speeds, "case 1")
     np.testing.assert_allclose(chart["mesh_frequency"], 130 * speeds / 60, rtol=1e-12)
     assert (np.diff(chart["natural_frequency"], axis=0) >= 0).all()
-    for label, line in zip(chart.attrs["labels"].split(), chart["combination"], strict=True):
+    for label, line in zip(chart["label"].values, chart["combination"], strict=True):
         (tongue,) = [tongue for tongue in FOUND if tongue.label == label]
         crossing = np.interp(0.0, chart["mesh_frequency"] - line, speeds)
         # The centre of the mean system lies in the tongue or, where the modulation is strong, near it.
@@ -137,6 +138,15 @@ def test_no_critical_thickness_is_told_with_the_reason():
     verdict = report.critical_thickness(inside, widest=1.001)
     assert verdict.critical is None
     assert "must end above all lobes" in verdict.reason
+
+
+def test_a_label_may_hold_blanks():
+    row = {"lower": 20.0, "upper": 21.0, "peak": 20.5, "growth_rate": 3.0}
+    found = [SimpleNamespace(label=label, **row) for label in ("mean 2", "(1+1)/1", "a; b\nc")]
+    table = report.tongue_table(found, "")
+    columns = report.tongue_columns({"a": table})
+    assert columns["tongue"] == ["mean 2", "(1+1)/1", "a; b\nc"]
+    assert {len(column) for column in columns.values()} == {3}
 
 
 def test_columns_of_tables():

@@ -86,7 +86,7 @@ def test_duty_chart_follows_the_closed_form():
 
 def test_bands_open_at_the_threshold_of_damping():
     data = arrays.bands(lambda e: classical.mathieu(2.0, e, 0.02), [0.07, 0.09, 0.3], 3, "Mathieu")
-    assert data.attrs["labels"] == "(1+1)/1"
+    assert data["label"].values.tolist() == ["(1+1)/1"]
     # ε = 4ζ = 0.08.
     assert np.isnan(data.lower.values[0]).tolist() == [True, False, False]
     low, high = independent.hsu_single_damped(0.3, 0.02)
@@ -98,7 +98,7 @@ def test_bands_of_the_coupled_pair_follow_the_formula(kind):
     how = {"coupling": 0.8} if kind == "sum" else {"circulation": 0.8}
     data = arrays.bands(lambda e: classical.coupled_pair(2.0, e, damping=0.02, **how), [0.4], 1, "pair")
     label = {"sum": "(1+2)/1", "difference": "(2-1)/1"}[kind]
-    band = data.attrs["labels"].split("; ").index(label)
+    band = data["label"].values.tolist().index(label)
     expected = independent.hsu_pair(0.4, how.get("coupling", 0.0), how.get("circulation", 0.0), 0.02)
     found = [float(data[name][band, 0]) for name in ("centre", "lower", "upper")]
     np.testing.assert_allclose(found, expected, rtol=1e-10)

@@ -11,6 +11,7 @@ from facegear.floquet import growth_rate
 from facegear.gearboxes import DRIVE, FIGURES
 from facegear.models import replace_parameter
 from facegear.parameters import rad_per_s
+from facegear.reference import label_rows
 from tests.independent.torsional_switching import numbers_of, spectral_radius
 
 
@@ -117,7 +118,7 @@ def test_figure_holds_map_tongues_and_bands():
     figure = FIGURES["7.12a"]
     chart = arrays.stability_figure(figure, columns=40, rows=3, sections=1, jobs=1)
     assert chart["growth_rate"].shape == (3, 40)
-    assert chart.attrs["labels"] == "(1+1)/1"
+    assert label_rows(chart["label"]) == [["(1+1)/1"]]
     found = arrays.section_intervals(chart, "(1+1)/1")
     ((value, (lower, upper)),) = found.items()
     assert value == pytest.approx(math.sqrt(figure.lowest * figure.highest))

@@ -46,7 +46,7 @@ def test_maps_hold_growth_rates_of_single_cells(figure, tmp_path):
 
 def test_traced_borders_have_no_growth(figure):
     section = figure.isel(section=0)
-    assert len(figure.attrs["labels"].split()) == section["lower"].notnull().sum() > 0
+    assert (figure["label"] != "").sum() == section["lower"].notnull().sum() > 0
     model = replace_parameter(MODEL, "stiffness", float(section["section"]))
     for side in ("lower", "upper"):
         for speed in section[side].dropna("tongue").values:
@@ -105,7 +105,7 @@ def test_drawings_carry_their_labels(figure, line):
     before = dict(mpl.rcParams)
     shown = texts(draw.stability_maps({"(a) map": figure}, {"(a) map": 1.9}))
     assert "safe zone" in shown
-    assert figure.attrs["labels"].split()[0] in shown
+    assert figure["label"].values[0, 0] in shown
     assert "safe zone" not in texts(draw.stability_maps({"(a) map": figure}, {"(a) map": None}))
     assert "second" in texts(draw.compared_maps({"first": figure, "second": figure}))
     assert "alone" in texts(draw.one_map(figure, "alone", 10.0))

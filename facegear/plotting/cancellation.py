@@ -29,11 +29,11 @@ def interference(curves: xr.Dataset, titles: Sequence[str], traced: Sequence[xr.
     traced : sequence of xarray.Dataset
         Tongues of :func:`facegear.pinions_arrays.traced` over the phase, one a positioning angle.
     """
-    names = curves.attrs["modes"].split("\n")
+    names = curves["mode_pair"].values.tolist()
     figure, axes = panels(2, curves.sizes["teeth"], 5.0, sharex=True, sharey="row")
     upper, lower = axes[: curves.sizes["teeth"]], axes[curves.sizes["teeth"] :]
     for number, (top, bottom, title, found) in enumerate(zip(upper, lower, titles, traced, strict=True)):
-        labels = [line.split() for line in found.attrs["labels"].split("\n")]
+        labels = found["label"].values.tolist()
         growth = found["largest_growth"].values
         for place, (name, colour) in enumerate(zip(names, (BLUE, VERMILION, GREEN), strict=False)):
             top.plot(curves["phase"], curves["interference"][number, place], color=colour, label=f"{name}/1")
@@ -68,9 +68,7 @@ def weak_tongues(data: xr.Dataset) -> Figure:
     end = float(data["phasing_sum"].max()) * 1.08
     for ax, name, label in zip(axes, ("growth", "width"), ("growth rate", "width"), strict=True):
         ax.plot([0, end], [0, end], color=INK, linewidth=0.9)
-        styles = zip(
-            data.attrs["pairs"].split("\n"), _MARKERS, (BLUE, VERMILION, GREEN, ORANGE), strict=False
-        )
+        styles = zip(data["pair_name"].values, _MARKERS, (BLUE, VERMILION, GREEN, ORANGE), strict=False)
         for number, (pair, marker, colour) in enumerate(styles):
             weakest = data[name].isel(factor=int(np.argmin(data["factor"].values)), pair=number)
             ax.plot(
@@ -128,7 +126,7 @@ def array_chart(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         From :func:`facegear.pinions_arrays.array_chart`.
     """
-    layouts = data.attrs["layouts"].split("\n")
+    layouts = data["layout_name"].values.tolist()
     count = data.sizes["gear_teeth"]
     figure, axes = panels(1, count, 0.36 * len(layouts) + 1.5, sharey=True)
     for ax, (place, teeth) in zip(axes, enumerate(data["gear_teeth"].values), strict=True):

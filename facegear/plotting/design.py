@@ -60,7 +60,7 @@ def root_stress(data: xr.Dataset, allowable: float) -> Figure:
     """
     figure, (ax,) = panels(1, 1, 4.2)
     looks = ((BLUE, "o-"), (GREEN, "^--"), (ORANGE, "s--"), (GREY, "D--"))
-    for number, (name, (colour, look)) in enumerate(zip(data.attrs["roots"].split("; "), looks, strict=True)):
+    for number, (name, (colour, look)) in enumerate(zip(data["root_name"].values, looks, strict=True)):
         stress = data["root_stress"].sel(root=number) / 1e6
         ax.plot(data["pinion_teeth"], stress, look, color=colour, markersize=4, label=name)
     ax.axhline(allowable / 1e6, color=VERMILION, linestyle=":", linewidth=2)
@@ -79,7 +79,7 @@ def root_stress(data: xr.Dataset, allowable: float) -> Figure:
 
 def _draw_tips(ax: Axes, chart: xr.Dataset) -> None:
     """Tips that decide up to 300 rpm (lobe A of the text) and up to 1000 rpm (lobe B)."""
-    labels = chart.attrs["tip_labels"].split()
+    labels = chart["tip_label"].values
     for letter, number in zip("BA", range(len(labels)), strict=False):
         speed, ratio = float(chart["tip_speed"][number]), float(chart["tip_ratio"][number])
         ax.plot(speed, ratio, "v", color=VERMILION, markersize=6, zorder=4)
@@ -107,7 +107,7 @@ def _draw_zones(ax: Axes, chart: xr.Dataset) -> None:
     bottom, top = ax.get_ylim()
     critical = float(chart["tip_ratio"].max())
     ax.text(12, (critical + top) / 2, "safe zone", color=GREEN, va="center", fontsize=11)
-    rows = [line.split() for line in chart.attrs["labels"].split("\n")]
+    rows = chart["label"].values.tolist()
     width = (chart["upper"] - chart["lower"]).fillna(0.0)
     label = rows[0][int(width.isel(section=0).argmax("tongue"))]
     # The name stands on the section above the lowest, if the lobe reaches up to it.

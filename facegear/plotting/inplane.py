@@ -338,7 +338,7 @@ def envelope(
         finite = data["power"].values[np.isfinite(data["power"].values)]
         top = 1.15 * float(_hp(max(finite.max(initial=0.0), critical[title])))
         for number, (name, (colour, line)) in enumerate(
-            zip(data.attrs["variants"].split("\n"), _LINES, strict=False)
+            zip(data["variant_name"].values, _LINES, strict=False)
         ):
             power = _hp(data["power"].values[number])
             bounded = np.where(np.isfinite(power), power, np.nan)

@@ -29,6 +29,7 @@ from facegear.plotting.style import (
     panels,
     styled,
 )
+from facegear.reference import label_rows
 
 _SPEED = "speed of the face gear [rpm]"
 _GROWTH_LABEL = "growth rate [1/s]"
@@ -58,14 +59,10 @@ def _colour_bar(figure: Figure, axes: Sequence[Axes], largest: float) -> None:
     )
 
 
-def _names(traced: xr.Dataset) -> list[list[str]]:
-    return [line.split() for line in traced.attrs["labels"].split("\n")]
-
-
 def _draw_names(ax: Axes, traced: xr.Dataset, apart: float) -> None:
     """Name each tongue where it grows fastest, a little above it; `apart` is the step between names."""
     places: dict[str, tuple[float, float, float]] = {}
-    for number, labels in enumerate(_names(traced)):
+    for number, labels in enumerate(label_rows(traced["label"])):
         row = traced.isel(section=number)
         for tongue, label in enumerate(labels):
             growth = float(row["largest_growth"][tongue])
@@ -207,7 +204,7 @@ def positions(chart: xr.Dataset, zones: Sequence[float]) -> Figure:
             ax.plot(
                 ends, [place, place], color=colour(row[column] / largest), linewidth=4, solid_capstyle="butt"
             )
-    for number, labels in enumerate(_names(chart)):
+    for number, labels in enumerate(label_rows(chart["label"])):
         found = chart.isel(section=number)
         for tongue in range(len(labels)):
             ends = [float(found["lower"][tongue]), float(found["upper"][tongue])]
@@ -271,7 +268,7 @@ def tooth_counts(charts: Mapping[str, xr.Dataset]) -> Figure:
     figure, axes = panels(len(charts), 1, 3.1 * len(charts) + 0.4, sharex=True)
     largest = max(float(chart["largest_growth"].max()) for chart in charts.values())
     for ax, (title, chart) in zip(axes, charts.items(), strict=True):
-        for number, labels in enumerate(_names(chart)):
+        for number, labels in enumerate(label_rows(chart["label"])):
             row = chart.isel(section=number)
             place = float(row["section"])
             ax.axhline(place, color=FAINT, linewidth=0.8, zorder=1)

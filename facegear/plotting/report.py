@@ -25,10 +25,6 @@ from facegear.plotting.style import (
 _SPEED = "speed of the face gear [rpm]"
 
 
-def _labels(data: xr.Dataset) -> list[str]:
-    return str(data.attrs["labels"]).split()
-
-
 @styled
 def campbell(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
     """Mesh frequency against combinations of natural frequencies; dots where they meet in a tongue.
@@ -49,7 +45,7 @@ def campbell(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
         ax.plot(speed, frequency, color=BLUE, linewidth=1.1, linestyle="--", label=name)
     ax.plot(speed, mesh, color=INK, linewidth=2.0, label="mesh frequency")
     for number, (label, low, high) in enumerate(
-        zip(_labels(tongues), tongues["lower"].values, tongues["upper"].values, strict=True)
+        zip(tongues["label"].values, tongues["lower"].values, tongues["upper"].values, strict=True)
     ):
         ends = np.array([low, high])
         ax.plot(ends, np.interp(ends, speed, mesh), color=VERMILION, linewidth=5, solid_capstyle="round")
@@ -139,7 +135,9 @@ def speed_strips(tables: Mapping[str, xr.Dataset], speeds_rpm: tuple[float, floa
 def _strip(ax: Axes, place: int, table: xr.Dataset, low: float, high: float) -> None:
     ax.barh(place, high - low, 0.5, low, color=GREEN, alpha=0.35)
     last = -np.inf
-    for label, start, stop in zip(_labels(table), table["lower"].values, table["upper"].values, strict=True):
+    for label, start, stop in zip(
+        table["label"].values, table["lower"].values, table["upper"].values, strict=True
+    ):
         # The narrowest tongues would not show: each is at least a line wide.
         ax.barh(place, max(stop - start, 2e-3 * (high - low)), 0.5, start, color=VERMILION)
         if start - last > 0.07 * (high - low):
@@ -156,7 +154,7 @@ def changes(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         From :func:`facegear.changes.effects_of_changes`.
     """
-    names = str(data.attrs["changes"]).split("; ")
+    names = data["change_name"].values.tolist()
     figure, (ax,) = panels(1, 1, 0.36 * len(names) + 1.2)
     slope = data["width_slope"].values
     place = -np.arange(len(names))

@@ -155,8 +155,9 @@ def estimates(data: xr.Dataset) -> Figure:
     ax.plot(ends, ends, color=INK, linewidth=0.9)
     ax.fill_between(ends, ends, floor, color=FAINT, alpha=0.6, linewidth=0)
     ax.text(3e-8, 8e-12, "would be too\noptimistic", color=INK, ha="left", va="top")
-    for number, name in enumerate(data.attrs["labels"].split("; ")):
-        chosen = data.isel(case=np.flatnonzero(data["method"].values == number))
+    methods = data["method"].values
+    for name in dict.fromkeys(methods.tolist()):
+        chosen = data.isel(case=np.flatnonzero(methods == name))
         label, colour, marker = _METHODS[name]
         ax.loglog(
             np.maximum(chosen["error"], floor),
@@ -333,7 +334,7 @@ def pair_charts(charts: Mapping[str, xr.Dataset], bands: Mapping[str, xr.Dataset
         mesh = _draw_growth(ax, growth, largest)
         _draw_border(ax, growth)
         _draw_bands(ax, bands[title])
-        for number, label in enumerate(bands[title].attrs["labels"].split("; ")):
+        for number, label in enumerate(bands[title]["label"].values):
             centre = float(bands[title]["centre"].isel(band=number).dropna("depth")[0])
             ax.annotate(
                 label,

@@ -25,6 +25,7 @@ from facegear.plotting.style import (
     panels,
     styled,
 )
+from facegear.reference import label_rows
 
 _AXIS = {
     "gear_inertia": "inertia of the face gear $J_2/J_1$",
@@ -126,10 +127,6 @@ def _draw_map(ax: Axes, chart: xr.Dataset, largest: float) -> Any:
     return mesh
 
 
-def _rows(text: str) -> list[list[str]]:
-    return [line.split() for line in text.split("\n")]
-
-
 def _draw_tongues(ax: Axes, chart: xr.Dataset) -> None:
     """Traced borders as dots."""
     for number in range(chart.sizes["section"]):
@@ -141,7 +138,7 @@ def _draw_tongues(ax: Axes, chart: xr.Dataset) -> None:
 
 def _draw_hsu(ax: Axes, chart: xr.Dataset) -> None:
     """Hsu's bands: their borders joined from section to section, and bars where a band has no neighbour."""
-    rows = _rows(chart.attrs["hsu_labels"])
+    rows = label_rows(chart["hsu_label"])
     ends: dict[str, list[tuple[float, float, float, int]]] = {}
     for number, labels in enumerate(rows):
         row = chart.isel(section=number)
@@ -162,7 +159,7 @@ def _draw_hsu(ax: Axes, chart: xr.Dataset) -> None:
 def _label_tongues(ax: Axes, chart: xr.Dataset) -> None:
     """Name every tongue once, where it grows most, names in rows that do not overlap."""
     places: dict[str, tuple[float, float, float]] = {}
-    for number, labels in enumerate(_rows(chart.attrs["labels"])):
+    for number, labels in enumerate(label_rows(chart["label"])):
         row = chart.isel(section=number)
         for tongue, label in enumerate(labels):
             growth = float(row["largest_growth"][tongue])

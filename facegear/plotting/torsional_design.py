@@ -83,13 +83,13 @@ def variant_tongues(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         From :func:`facegear.torsional_design_arrays.variant_tongues`.
     """
-    names = data.attrs["variants"].split("; ")
+    names = data["variant_name"].values.tolist()
     figure, (ax,) = panels(1, 1, 1.2 + 0.42 * len(names))
     norm = Normalize(0.0, float(data["largest_growth"].max()))
-    for row, labels in enumerate(data.attrs["labels"].split("\n")):
+    for row in range(len(names)):
         found = data.isel(variant=row).dropna("tongue", subset=["lower"])
         place = len(names) - 1 - row
-        for number, label in enumerate(labels.split()):
+        for number, label in enumerate(found["label"].values):
             part = found.isel(tongue=number)
             low, high = float(part["lower"]), float(part["upper"])
             colour = _GROWTH(norm(float(part["largest_growth"])))
@@ -155,7 +155,7 @@ def openings(data: xr.Dataset) -> Figure:
         From :func:`facegear.modulation_arrays.openings`.
     """
     figure, (ax,) = panels(1, 1, 4.2)
-    for number, label in enumerate(data.attrs["labels"].split("; ")):
+    for number, label in enumerate(data["label"].values):
         row = data.isel(resonance=number)
         colour, marker = _LOOKS[number]
         ax.plot(data["depth"], row["growth_rate"], marker + "-", color=colour, markersize=5, label=label)
@@ -197,7 +197,7 @@ def levers(
         Variable shown.
     """
     values = data[what].values
-    names = data.attrs["tongues"].split("; ")
+    names = [f"{a}: {b}" for a, b in zip(data["case_name"].values, data["label"].values, strict=True)]
     figure = Figure(figsize=(WIDTH, 1.0 + 0.3 * len(names)), layout="constrained")
     ax = figure.subplots()
     # Beyond this a colour says no more than the number written on it.
@@ -233,7 +233,7 @@ def closing(data: xr.Dataset, xlabel: str) -> Figure:
         Name of the damping, with its unit.
     """
     figure, (ax,) = panels(1, 1, 4.0)
-    for number, label in enumerate(data.attrs["labels"].split("; ")):
+    for number, label in enumerate(data["label"].values):
         row = data.isel(tongue=number)
         colour, _ = _LOOKS[number]
         found = row["closing_damping"].dropna("root").values

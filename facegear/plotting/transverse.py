@@ -23,6 +23,7 @@ from facegear.plotting.style import (
     panels,
     styled,
 )
+from facegear.reference import label_rows
 
 _AXIS = {
     "stiffness": r"bearing stiffness $\mu$",
@@ -58,9 +59,8 @@ def _largest(charts: Sequence[xr.Dataset]) -> float:
 def _draw_sections(ax: Axes, chart: xr.Dataset) -> None:
     """Traced borders as dots, and the names of tongues above the section where they stand highest."""
     scale = _SCALE[_parameter(chart)]
-    rows = [line.split() for line in chart.attrs["labels"].split("\n")]
     places: dict[str, tuple[float, float, float]] = {}
-    for number, labels in enumerate(rows):
+    for number, labels in enumerate(label_rows(chart["label"])):
         row = chart.isel(section=number)
         height = float(row["section"]) * scale
         for side in ("lower", "upper"):
@@ -190,10 +190,9 @@ def hsu_over_floquet(chart: xr.Dataset, bands: xr.Dataset) -> Figure:
     figure, (ax,) = panels(1, 1, 4.4)
     mesh = _draw_map(ax, chart, _largest([chart]))
     scale = _SCALE[_parameter(chart)]
-    rows = [line.split() for line in bands.attrs["labels"].split("\n")]
-    for number, labels in enumerate(rows):
+    for number in range(bands.sizes["section"]):
         row, height = bands.isel(section=number), float(bands["section"][number]) * scale
-        for band in range(len(labels)):
+        for band in range(bands.sizes["band"]):
             ends = [float(row["lower"][band]), float(row["upper"][band])]
             ax.plot(ends, [height, height], "|-", color=VERMILION, linewidth=1.8, markersize=9)
     ax.plot([], [], "|-", color=VERMILION, label="Hsu, first order")
