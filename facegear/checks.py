@@ -54,20 +54,20 @@ def load_anchors(path: str | Path) -> tuple[Anchor, ...]:
     Parameters
     ----------
     path : str or Path
-        YAML file with the keys ``route`` (a sentence) and ``anchors`` (a list of mappings with the fields of
-        :class:`Anchor`).
+        YAML file with the keys ``figure`` (its own name without ending), ``route`` (a sentence) and ``anchors`` (a
+        list of mappings with the fields of :class:`Anchor`).
 
     Raises
     ------
     ReferenceFileError
-        If the file is missing, or holds no anchor, or a key is unknown or missing.
+        If the file is missing, holds no anchor or those of another figure, or a key is unknown or missing.
     """
     path = Path(path)
     if not path.is_file():
         raise ReferenceFileError(f"anchor file {path.name} is missing in {path.parent}")
     try:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))
-        known_keys(path.name, content, required=("route", "anchors"))
+        known_keys(path.name, content, required=("figure", "route", "anchors"))
         for entry in content["anchors"]:
             known_keys(f"anchor of {path.name}", entry, required=("variable", "at", "value", "atol"))
         anchors = tuple(
@@ -81,6 +81,10 @@ def load_anchors(path: str | Path) -> tuple[Anchor, ...]:
         )
     except (yaml.YAMLError, ValueError, TypeError, AttributeError) as error:
         raise ReferenceFileError(f"anchor file {path.name} cannot be used: {error}") from error
+    if content["figure"] != path.stem:
+        raise ReferenceFileError(
+            f"anchor file {path.name} holds the anchors of '{content['figure']}': it lies in the wrong place"
+        )
     if not anchors:
         raise ReferenceFileError(f"anchor file {path.name} holds no anchor")
     return anchors

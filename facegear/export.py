@@ -7,6 +7,8 @@ its axis, the tooth is centred on the −y axis.
 from __future__ import annotations
 
 import csv
+import re
+import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -219,14 +221,15 @@ def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
     Parameters
     ----------
     columns : mapping of str to sequence
-        Heading with its unit to values; all of one length. Numbers are written to twelve digits.
+        Heading with its unit to values; all of one length. Numbers are written to twelve digits. A heading or text
+        that a spreadsheet would take for a formula, see :func:`defused`, gets an apostrophe before it.
     path : str or Path
         The file; its folder is made.
 
     Returns
     -------
     Path
-        The file written.
+        The file written, UTF-8 after a byte-order mark, without which Excel reads ° as Â°.
 
     Raises
     ------
@@ -234,9 +237,32 @@ def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
         If the columns differ in length.
     """
     path = Path(path)
-    with written_whole(path) as place, place.open("w", encoding="utf-8", newline="") as file:
+    with written_whole(path) as place, place.open("w", encoding="utf-8-sig", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow(columns)
+        writer.writerow(map(defused, columns))
         for row in zip(*columns.values(), strict=True):
-            writer.writerow(f"{v:.12g}" if isinstance(v, float | np.floating) else v for v in row)
+            writer.writerow(map(_cell, row))
     return path
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, float | np.floating):
+        return f"{value:.12g}"
+    return defused(value) if isinstance(value, str) else value
+
+
+def defused(text: str) -> str:
+    """Put an apostrophe before text that a spreadsheet would run as a formula.
+
+    That is text that begins with =, +, -, @, also in full width, or with a tab or the end of a line; a number is none.
+
+    Examples
+    --------
+    >>> defused("=1+1"), defused("-1.5"), defused("mean 2")
+    ("'=1+1", '-1.5', 'mean 2')
+    """
+    first = unicodedata.normalize("NFKC", text[:1])
+    risky = (
+        bool(first) and first in "=+-@\t\r\n" and not re.fullmatch(r"[+-]\d+(\.\d*)?([eE][+-]?\d+)?", text)
+    )
+    return f"'{text}" if risky else text

@@ -1,12 +1,43 @@
-"""Files that appear whole or not at all."""
+"""Files that appear whole or not at all, and names for them."""
 
 from __future__ import annotations
 
 import os
+import re
 import tempfile
+import unicodedata
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+_LONGEST_STEM = 60
+
+
+def file_stem(text: str) -> str:
+    """Make a name of a file, without its ending, from any text.
+
+    Parameters
+    ----------
+    text : str
+        For example the name of a drive or of a model, as somebody typed it.
+
+    Returns
+    -------
+    str
+        Small letters, digits and single underscores, which every system takes and no shell reads anything into: at
+        least one, at most 60 of them. Accents are taken off; what has no such letter is left out. Different texts may
+        get the same name.
+
+    Examples
+    --------
+    >>> file_stem("Torsional, true sweep"), file_stem("../../etc/passwd"), file_stem("=°")
+    ('torsional_true_sweep', 'etc_passwd', 'unnamed')
+    """
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
+    stem = re.sub(r"[^a-z0-9]+", "_", plain)[:_LONGEST_STEM].strip("_")
+    # Windows keeps these names to itself, with any ending.
+    reserved = re.fullmatch(r"con|prn|aux|nul|(com|lpt)\d", stem)
+    return f"{stem}_" if reserved else stem or "unnamed"
 
 
 @contextmanager

@@ -13,7 +13,6 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -21,6 +20,7 @@ import numpy as np
 
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
+from facegear.provenance import code_digest
 
 Workers = Literal["processes", "threads"]
 
@@ -58,7 +58,8 @@ def computed(
         Show a progress bar; if None, only on a terminal.
     cache_directory : path, optional
         Where results are kept, each written as soon as it is there, under a name that is a digest of all it depends
-        on. A file that is damaged is not used.
+        on, the code of the package included. The file is bound to that name: one that is damaged, or lies where
+        another belongs, is not used.
     prefer : {"processes", "threads"}
         What the workers are on this machine. Threads start at once, and keep up where nearly all time goes into
         large batches of NumPy's linear algebra.
@@ -145,38 +146,46 @@ class _Store:
         self.directory.mkdir(parents=True, exist_ok=True)
 
     def _key(self, task: Task) -> str:
-        digest = hashlib.sha256(f"facegear {version('facegear')} {type(task).__name__}".encode())
-        for part in task.content():
-            if isinstance(part, np.ndarray):
-                digest.update(f"|{part.shape}{part.dtype}".encode() + np.ascontiguousarray(part).tobytes())
-            else:
-                digest.update(f"|{part!r}".encode())
+        digest = hashlib.sha256(f"facegear {code_digest()} {type(task).__name__}".encode())
+        # An array inside a model is written out, with all its elements and digits.
+        with np.printoptions(threshold=sys.maxsize, floatmode="unique"):
+            for part in task.content():
+                if isinstance(part, np.ndarray):
+                    digest.update(
+                        f"|{part.shape}{part.dtype}".encode() + np.ascontiguousarray(part).tobytes()
+                    )
+                else:
+                    digest.update(f"|{part!r}".encode())
         return digest.hexdigest()
 
     def load(self, task: Task) -> Array | None:
-        """Return a result that is there and undamaged, else None."""
-        path = self.directory / f"{self._key(task)}.npz"
+        """Return a result that is there, undamaged and this task's, else None."""
+        key = self._key(task)
         try:
-            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
+            content = (self.directory / f"{key}.npz").read_bytes()
+            with np.load(io.BytesIO(content), allow_pickle=False) as file:
                 result, digest = file["result"], str(file["digest"])
         # A damaged archive fails in many ways (zipfile, zlib, numpy); all of them mean: compute again.
         except Exception:
             return None
-        if result.dtype != np.float64 or digest != _digest(result):
+        if result.dtype != np.float64 or digest != _digest(key, result):
             return None
         return np.asarray(result, dtype=float)
 
     def save(self, task: Task, result: Array) -> None:
         """Write under another name first: a file with the right name is complete."""
+        key = self._key(task)
         handle, temporary = tempfile.mkstemp(dir=self.directory, suffix=".part")
         try:
             with os.fdopen(handle, "wb") as file:
-                np.savez(file, result=result, digest=_digest(result))
-            os.replace(temporary, self.directory / f"{self._key(task)}.npz")
+                np.savez(file, result=result, digest=_digest(key, result))
+            os.replace(temporary, self.directory / f"{key}.npz")
         except BaseException:
             os.unlink(temporary)
             raise
 
 
-def _digest(result: Array) -> str:
-    return hashlib.sha256(f"{result.shape}".encode() + np.ascontiguousarray(result).tobytes()).hexdigest()
+def _digest(key: str, result: Array) -> str:
+    """Bind a result to the task that it belongs to."""
+    whole = f"{key} {result.shape}".encode() + np.ascontiguousarray(result).tobytes()
+    return hashlib.sha256(whole).hexdigest()

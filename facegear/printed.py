@@ -7,7 +7,6 @@ the unit, and the status that the compendium claims. A chapter computes the same
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections.abc import Mapping, Sequence
@@ -18,6 +17,7 @@ from typing import Any
 
 import yaml
 
+from facegear.export import write_table
 from facegear.files import written_whole
 from facegear.parameters import known_keys
 
@@ -256,7 +256,7 @@ def remarks_as_markdown(rows: Sequence[LedgerRow]) -> str:
 
 
 def save_csv(chapters: Mapping[int, Sequence[LedgerRow]], path: str | Path) -> Path:
-    """Write all rows as one table of comma-separated values, with a heading line.
+    """Write all rows as one table, as :func:`facegear.export.write_table` does.
 
     Parameters
     ----------
@@ -265,15 +265,12 @@ def save_csv(chapters: Mapping[int, Sequence[LedgerRow]], path: str | Path) -> P
     path : str or Path
         The file; its folder is made.
     """
-    path = Path(path)
-    names = [field.name for field in fields(PrintedValue)]
-    with written_whole(path) as place, place.open("w", encoding="utf-8", newline="") as stream:
-        table = csv.DictWriter(stream, ["chapter", *names, "computed"])
-        table.writeheader()
-        for number, rows in chapters.items():
-            for row in rows:
-                table.writerow({"chapter": number, **asdict(row.printed), "computed": row.computed})
-    return path
+    listed = [(number, row) for number, rows in chapters.items() for row in rows]
+    columns: dict[str, list[Any]] = {"chapter": [number for number, _ in listed]}
+    for field in fields(PrintedValue):
+        columns[field.name] = [getattr(row.printed, field.name) for _, row in listed]
+    columns["computed"] = [row.computed for _, row in listed]
+    return write_table(columns, path)
 
 
 def save_ledger(rows: tuple[LedgerRow, ...], path: str | Path) -> Path:
@@ -319,7 +316,8 @@ def load_chapters(printed_folder: str | Path, ledger_folder: str | Path) -> dict
     Raises
     ------
     LedgerError
-        If a file name does not begin with the number of a chapter, and as :func:`load_ledger`.
+        If a file name does not begin with the number of a chapter, a ledger is not that of its file of printed values,
+        and as :func:`load_ledger`.
     """
     chapters: dict[int, tuple[LedgerRow, ...]] = {}
     for path in sorted(Path(printed_folder).glob("*.yaml")):
@@ -329,7 +327,12 @@ def load_chapters(printed_folder: str | Path, ledger_folder: str | Path) -> dict
                 f"{path.name}: a file of printed values must be called chNN.yaml or chNN_topic.yaml"
             )
         number = int(name[1])
-        chapters[number] = chapters.get(number, ()) + load_ledger(Path(ledger_folder) / path.name)
+        rows = load_ledger(Path(ledger_folder) / path.name)
+        if tuple(row.printed for row in rows) != load_printed(path):
+            raise LedgerError(
+                f"ledger {path.name} does not hold the printed values of {path.name}: execute its chapter again"
+            )
+        chapters[number] = chapters.get(number, ()) + rows
     return chapters
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import subprocess
 from functools import cache
 from importlib.metadata import version
@@ -22,6 +23,16 @@ def made_by() -> dict[str, str]:
     """
     commit = commit_of(Path(__file__).resolve().parent)
     return {"facegear_version": version("facegear")} | ({"facegear_commit": commit} if commit else {})
+
+
+@cache
+def code_digest() -> str:
+    """SHA-256 over the code of the package: what an earlier code computed is not this one's."""
+    folder = Path(__file__).resolve().parent
+    state = hashlib.sha256()
+    for path in sorted(folder.rglob("*.py")):
+        state.update(f"{path.relative_to(folder).as_posix()}\n".encode() + path.read_bytes())
+    return state.hexdigest()
 
 
 @cache  # git takes some milliseconds, and a chapter writes dozens of files

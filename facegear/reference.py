@@ -219,6 +219,8 @@ def save(dataset: xr.Dataset, path: str | Path) -> Path:
         if variable.dtype.kind not in "fi":
             raise ValueError(f"variable '{name}' has type {variable.dtype}; store real or integer numbers")
     stored = _with_rows(_as_netcdf3(dataset))
+    # What was loaded from another file keeps nothing of how that one was made.
+    stored.attrs = {key: value for key, value in stored.attrs.items() if key not in _PROVENANCE}
     stored.attrs |= made_by() | {
         _NAME: path.stem,
         "numpy_version": np.__version__,
@@ -360,6 +362,7 @@ def _with_rows(dataset: xr.Dataset) -> xr.Dataset:
             variable.dims,
             np.full([length or 1 for length in variable.shape], _nothing(variable.dtype), variable.dtype),
             variable.attrs,
+            variable.encoding,
         )
         for name, variable in dataset.variables.items()
         if variable.size == 0

@@ -1,9 +1,14 @@
 """References and anchors together: nothing is accepted that lacks either or disagrees with either."""
 
+import shutil
+from pathlib import Path
+
 import pytest
 
 from facegear import checks, reference
 from tests.test_reference import figure
+
+DATA = Path(__file__).resolve().parents[1] / "data"
 
 
 @pytest.fixture
@@ -17,7 +22,7 @@ def directories(tmp_path):
 
 def write_anchor(data, value, speed=2.0):
     (data / "anchors" / "fig.yaml").write_text(
-        "route: by hand\nanchors:\n"
+        "figure: fig\nroute: by hand\nanchors:\n"
         f"- {{variable: radius, at: {{speed: {speed}, pair: 1}}, value: {value}, atol: 1.0e-9}}\n"
     )
 
@@ -45,13 +50,34 @@ def test_anchor_off_the_grid_is_refused(directories):
 
 
 @pytest.mark.parametrize(
-    "content", ["route: none\nanchors: []\n", "route: x\nanchor: []\n", "[1, 2", "route: x\nanchors: [{}]\n"]
+    "content",
+    [
+        "figure: fig\nroute: none\nanchors: []\n",
+        "figure: fig\nroute: x\nanchor: []\n",
+        "[1, 2",
+        "figure: fig\nroute: x\nanchors: [{}]\n",
+        "route: x\nanchors: [{variable: radius, at: {speed: 2.0, pair: 1}, value: 3.0, atol: 1.0e-9}]\n",
+    ],
 )
 def test_unusable_anchor_file_is_refused(directories, content):
     data, build = directories
     (data / "anchors" / "fig.yaml").write_text(content)
     with pytest.raises(reference.ReferenceCheckError, match=r"fig\.yaml"):
         checks.check_figures({"fig": figure()}, data, build)
+
+
+def test_anchors_of_another_figure_are_refused(directories):
+    data, _ = directories
+    shutil.copy(data / "anchors" / "fig.yaml", data / "anchors" / "other.yaml")
+    with pytest.raises(reference.ReferenceFileError, match=r"other\.yaml holds the anchors of 'fig'"):
+        checks.load_anchors(data / "anchors" / "other.yaml")
+
+
+def test_every_stored_file_is_its_own():
+    for path in (DATA / "anchors").glob("*.yaml"):
+        assert checks.load_anchors(path)
+    for path in (DATA / "reference").glob("*.nc"):
+        reference.load(path)
 
 
 def test_all_arrays_are_written_before_the_first_failure(directories):

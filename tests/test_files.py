@@ -1,8 +1,10 @@
 """Files appear whole or not at all."""
 
+import re
+
 import pytest
 
-from facegear.files import written_whole
+from facegear.files import file_stem, written_whole
 
 
 def test_a_file_appears_when_all_is_written(tmp_path):
@@ -29,3 +31,35 @@ def test_a_file_stays_what_it_was_if_writing_stops(tmp_path):
         stop_halfway()
     assert path.read_text(encoding="utf-8") == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "../../etc/passwd",
+        "a/b\\c",
+        "CON",
+        "nul",
+        "",
+        " ",
+        "\x00",
+        "=1+1",
+        "-rf",
+        "~",
+        "a" * 500,
+        "Ü" * 300,
+        "齿轮",
+        "a\nb",
+    ],
+)
+def test_any_text_gives_a_name_of_a_file(tmp_path, text):
+    stem = file_stem(text)
+    assert re.fullmatch(r"[a-z0-9][a-z0-9_]{0,59}", stem)
+    assert stem not in {"con", "nul"}
+    (tmp_path / f"{stem}.nc").write_text("", encoding="utf-8")
+    assert [path.parent for path in tmp_path.rglob("*.nc")] == [tmp_path]
+
+
+def test_names_that_are_safe_can_be_read():
+    assert file_stem("transverse, true sweep") == "transverse_true_sweep"
+    assert file_stem("Zahnrad für Prüfstand 2") == "zahnrad_fur_prufstand_2"

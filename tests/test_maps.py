@@ -339,6 +339,27 @@ def test_a_damaged_cache_is_computed_anew(tmp_path, monkeypatch, damage):
     assert len(done) == 1
 
 
+def test_results_that_lie_where_another_belongs_are_computed_anew(tmp_path, monkeypatch):
+    arguments = (MATHIEU, SPEEDS, "modulation", VALUES)
+    expected = stability_map(*arguments, jobs=1, cache_directory=tmp_path)
+    one, other, *_ = sorted(tmp_path.glob("*.npz"))
+    kept = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    other.write_bytes(kept)
+    done = interrupt_after(monkeypatch, 100)
+    np.testing.assert_array_equal(stability_map(*arguments, jobs=1, cache_directory=tmp_path), expected)
+    assert len(done) == 2
+
+
+def test_results_of_another_code_are_computed_anew(tmp_path, monkeypatch):
+    arguments = (MATHIEU, SPEEDS, "modulation", VALUES)
+    stability_map(*arguments, jobs=1, cache_directory=tmp_path)
+    monkeypatch.setattr(parallel, "code_digest", lambda: "another")
+    done = interrupt_after(monkeypatch, 100)
+    stability_map(*arguments, jobs=1, cache_directory=tmp_path)
+    assert len(done) == 4
+
+
 @pytest.mark.parametrize(
     "other",
     [

@@ -27,7 +27,9 @@ from facegear.reference import variable
 arrays = xr.Dataset({{"y": variable("x", [1.0, {value}], "height", "m", atol=1e-9)}}, {{"x": [0.0, 1.0]}})
 check_figures({{"figure_tiny": arrays}}, "{data}", "{build}")
 """
-ANCHOR = "route: by hand\nanchors:\n- {variable: y, at: {x: 1.0}, value: 2.0, atol: 1.0e-6}\n"
+ANCHOR = (
+    "figure: figure_tiny\nroute: by hand\nanchors:\n- {variable: y, at: {x: 1.0}, value: 2.0, atol: 1.0e-6}\n"
+)
 
 
 def run(notebook: Path) -> subprocess.CompletedProcess[str]:

@@ -70,7 +70,7 @@ def test_strips_are_red_where_it_is_unstable():
     assert [label.get_text() for label in ax.get_yticklabels()] == ["first", "second"]
     spans = [(bar.get_x(), bar.get_width()) for bar in ax.patches]
     assert spans == [(100.0, 900.0), (200.0, 20.0), (600.0, 100.0), (100.0, 900.0)]
-    assert texts(ax) == ["(1+1)/1", "(1+2)/1"]
+    assert texts(ax) == ["(1+1)/1", "mean 2"]
 
 
 def test_a_tongue_too_narrow_to_see_is_a_line_wide():

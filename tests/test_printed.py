@@ -1,6 +1,7 @@
 """The ledger: a status follows from the numbers, or the chapter stops."""
 
 import csv
+import shutil
 from pathlib import Path
 
 import pytest
@@ -173,7 +174,7 @@ def test_all_rows_are_written_as_one_table(tmp_path):
     entries = (printed.PrintedValue(**ENTRY), printed.PrintedValue(**(ENTRY | {"id": "b", "printed": True})))
     rows = printed.ledger(entries, {ENTRY["id"]: 231.94, "b": True})
     path = printed.save_csv({3: rows[:1], 4: rows[1:]}, tmp_path / "new" / "ledger.csv")
-    with path.open(encoding="utf-8", newline="") as stream:
+    with path.open(encoding="utf-8-sig", newline="") as stream:
         table = list(csv.DictReader(stream))
     assert [(row["chapter"], row["id"], row["computed"]) for row in table] == [
         ("3", ENTRY["id"], "231.94"),
@@ -195,6 +196,20 @@ def test_files_of_one_chapter_are_put_together(tmp_path):
         3: ["ch03"],
         4: ["ch04", "ch04_design"],
     }
+
+
+def test_a_ledger_of_another_chapter_is_refused(tmp_path):
+    (tmp_path / "printed").mkdir()
+    for name in ("ch03", "ch04"):
+        source = tmp_path / "printed" / f"{name}.yaml"
+        source.write_text(yaml.safe_dump([ENTRY | {"id": name}]), encoding="utf-8")
+        rows = printed.ledger(printed.load_printed(source), {name: 231.94})
+        printed.save_ledger(rows, tmp_path / "ledger" / source.name)
+    shutil.copy(tmp_path / "ledger" / "ch03.yaml", tmp_path / "ledger" / "ch04.yaml")
+    with pytest.raises(
+        printed.LedgerError, match=r"ledger ch04\.yaml does not hold the printed values of ch04\.yaml"
+    ):
+        printed.load_chapters(tmp_path / "printed", tmp_path / "ledger")
 
 
 @pytest.mark.parametrize("name", ["chapter3", "ch3", "notes", "ch04-design"])

@@ -25,7 +25,7 @@ def called(command, folder):
 
 
 def rows(path):
-    with path.open(encoding="utf-8") as file:
+    with path.open(encoding="utf-8-sig") as file:
         return list(csv.DictReader(file))
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from facegear.reference import VariableDifference, difference, load  # noqa: E402
+from facegear.reference import ReferenceFileError, VariableDifference, difference, load  # noqa: E402
 from tools.lock import one_at_a_time  # noqa: E402
 from tools.run_notebook import NotebookFailedError, execute  # noqa: E402
 
@@ -48,7 +48,7 @@ def compute(notebook: Path) -> bool:
 def told(row: VariableDifference) -> str:
     """Return the line about one variable."""
     if row.change != "compared":
-        return f"  {row.name}: {row.change}"
+        return f"  {row.name}: {row.change} {row.where}".rstrip()
     within = "within" if row.agrees else "BEYOND"
     return (
         f"  {row.name}: largest change {row.largest_absolute:.3g}, relative {row.largest_relative:.3g}, "
@@ -57,17 +57,22 @@ def told(row: VariableDifference) -> str:
 
 
 def replace(new: Path) -> None:
-    """Put one array file in the place of the stored one and say what moved."""
+    """Put one array file in the place of the stored one, if anything moved, and say what."""
     stored = REFERENCE / new.name
     arrays = load(new)
-    if stored.exists():
+    try:
         rows = difference(arrays, load(stored))
+    except ReferenceFileError as problem:
+        say(f"{new.name}: {'replaced' if stored.exists() else 'new'}, {len(arrays.variables)} arrays")
+        if stored.exists():
+            say(f"  {problem}")
+    else:
         moved = [row for row in rows if row.change != "compared" or row.largest_absolute > 0]
         say(f"{new.name}: {len(moved)} of {len(rows)} arrays moved")
         for row in moved:
             say(told(row))
-    else:
-        say(f"{new.name}: new, {len(arrays.variables)} arrays")
+        if not moved:  # the file goes on telling which commit made these numbers
+            return
     temporary = stored.with_suffix(".tmp")
     shutil.copyfile(new, temporary)
     os.replace(temporary, stored)

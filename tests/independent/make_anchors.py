@@ -163,7 +163,7 @@ def main():
     chosen = sys.argv[1:] or list(FIGURES)
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name in tqdm(chosen):
-        content = {"route": ROUTE, "anchors": list(FIGURES[name]())}
+        content = {"figure": name, "route": ROUTE, "anchors": list(FIGURES[name]())}
         text = yaml.safe_dump(content, sort_keys=False, width=110)
         (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
 

@@ -223,7 +223,7 @@ FIGURES = {
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name, make in tqdm(FIGURES.items()):
-        content = {"route": ROUTE, "anchors": list(make())}
+        content = {"figure": name, "route": ROUTE, "anchors": list(make())}
         text = yaml.safe_dump(content, sort_keys=False, width=110)
         (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
 

@@ -339,7 +339,8 @@ def centroid():
 
 
 def write(name, route, anchors):
-    text = yaml.safe_dump({"route": route, "anchors": list(anchors)}, sort_keys=False, width=110)
+    content = {"figure": name, "route": route, "anchors": list(anchors)}
+    text = yaml.safe_dump(content, sort_keys=False, width=110)
     (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
 
 

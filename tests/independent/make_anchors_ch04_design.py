@@ -174,7 +174,10 @@ def main(names):
             continue
         anchors = list(tqdm(values(), desc=name, disable=None))
         text = yaml.safe_dump(
-            {"route": route, "anchors": anchors}, sort_keys=False, allow_unicode=True, width=110
+            {"figure": name, "route": route, "anchors": anchors},
+            sort_keys=False,
+            allow_unicode=True,
+            width=110,
         )
         (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
 

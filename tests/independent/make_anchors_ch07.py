@@ -173,7 +173,7 @@ def arm_anchors():
 
 def write(name, route, anchors):
     text = yaml.safe_dump(
-        {"route": route, "anchors": anchors}, sort_keys=False, allow_unicode=True, width=110
+        {"figure": name, "route": route, "anchors": anchors}, sort_keys=False, allow_unicode=True, width=110
     )
     (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
 

@@ -387,7 +387,10 @@ def main(names):
         if names and name not in names:
             continue
         text = yaml.safe_dump(
-            {"route": route, "anchors": list(values())}, sort_keys=False, allow_unicode=True, width=110
+            {"figure": name, "route": route, "anchors": list(values())},
+            sort_keys=False,
+            allow_unicode=True,
+            width=110,
         )
         (FOLDER / f"{name}.yaml").write_text(text, encoding="utf-8")
         print(name, flush=True)
