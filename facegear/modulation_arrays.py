@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from facegear.closing import growth_peaks
 from facegear.gearboxes import DRIVE, ProportionalGearbox
 from facegear.hsu import resonance_bands
+from facegear.labels import Combination
 from facegear.modal import standard_form
 from facegear.models import Model, value_of
 from facegear.parameters import FloatArray, integer_at_least, nonnegative, positive, rad_per_s, rpm
@@ -81,13 +82,15 @@ def undamped(model: ProportionalGearbox) -> ProportionalGearbox:
     return replace(model, mesh_damping=0.0, input_damping=0.0, output_damping=0.0)
 
 
-def hsu_errors(resonances: Sequence[tuple[ProportionalGearbox, str]], depths: ArrayLike) -> xr.Dataset:
+def hsu_errors(
+    resonances: Sequence[tuple[ProportionalGearbox, Combination]], depths: ArrayLike
+) -> xr.Dataset:
     """Borders of undamped tongues from Floquet and from Hsu against the depth of modulation.
 
     Parameters
     ----------
-    resonances : sequence of (ProportionalGearbox, str)
-        Gearbox and label of each resonance, as "(1+1)/2"; dampers are taken out.
+    resonances : sequence of (ProportionalGearbox, Combination)
+        Gearbox, and modes and order of each resonance; dampers are taken out.
     depths : array_like
         ε, ascending.
 
@@ -104,12 +107,13 @@ def hsu_errors(resonances: Sequence[tuple[ProportionalGearbox, str]], depths: Ar
     """
     axis = np.asarray(depths, dtype=float)
     table = np.full((4, len(resonances), axis.size), np.nan)
-    for row, (gearbox, label) in enumerate(resonances):
-        order = int(label.split("/")[1])
+    for row, (gearbox, combination) in enumerate(resonances):
+        label = combination.label
         for column, depth in enumerate(axis.tolist()):
             model = ScaledModulation(undamped(gearbox), depth)
             # Without dampers nothing but the period depends on the speed.
-            bands = [band for band in resonance_bands(model.system(1.0), order=order) if band.label == label]
+            every = resonance_bands(model.system(1.0), order=combination.order)
+            bands = [band for band in every if band.label == label]
             if len(bands) != 1:
                 raise ValueError(f"resonances must have one band each of Hsu's; {label} has {len(bands)}")
             low, high = bands[0].lower / DRIVE.gear_teeth, bands[0].upper / DRIVE.gear_teeth
@@ -139,7 +143,9 @@ def hsu_errors(resonances: Sequence[tuple[ProportionalGearbox, str]], depths: Ar
         },
         coords={
             "resonance": np.arange(len(resonances)),
-            "label": text("resonance", [label for _, label in resonances], "Label of the resonance"),
+            "label": text(
+                "resonance", [combination.label for _, combination in resonances], "Label of the resonance"
+            ),
             "depth": axis,
         },
         attrs={
@@ -156,16 +162,15 @@ def fitted_orders(data: xr.Dataset, name: str, largest_depth: float) -> FloatArr
 
 
 def openings(
-    model: ProportionalGearbox, ranges_rpm: Mapping[str, tuple[float, float]], depths: ArrayLike
+    model: ProportionalGearbox, ranges_rpm: Mapping[Combination, tuple[float, float]], depths: ArrayLike
 ) -> xr.Dataset:
     """Largest growth of the resonances of one mode with damping, against the depth of modulation.
 
     Parameters
     ----------
     model : ProportionalGearbox
-    ranges_rpm : mapping of str to tuple of float
-        Label of each resonance of a single mode, as "(1+1)/2", and the speeds [rpm] between which it lies at all
-        depths.
+    ranges_rpm : mapping of Combination to tuple of float
+        Each resonance of a single mode, and the speeds [rpm] between which it lies at all depths.
     depths : array_like
         ε, ascending.
 
@@ -178,12 +183,12 @@ def openings(
     """
     axis = np.asarray(depths, dtype=float)
     growth, opened, hsu = [], [], []
-    for label, limits in ranges_rpm.items():
+    for combination, limits in ranges_rpm.items():
         low, high = (float(rad_per_s(limit)) for limit in limits)
         peaks = growth_peaks(ScaledModulation(model, 1.0), "depth", axis, low, high, method=_METHOD)
         growth.append(peaks.growth_rates)
         opened.append(next((c.value for c in peaks.closing_values if not c.closes), np.nan))
-        hsu.append(_hsu_growth(model, label, (low + high) / 2.0))
+        hsu.append(_hsu_growth(model, combination, (low + high) / 2.0))
     at_rest, real = np.array(hsu).T
     hsu_growth = at_rest[:, None] + (real - at_rest)[:, None] * axis
     return xr.Dataset(
@@ -197,17 +202,18 @@ def openings(
         },
         coords={
             "resonance": np.arange(len(ranges_rpm)),
-            "label": text("resonance", list(ranges_rpm), "Label of the resonance"),
+            "label": text(
+                "resonance", [combination.label for combination in ranges_rpm], "Label of the resonance"
+            ),
             "depth": axis,
         },
         attrs={"parameters": describe(model)},
     )
 
 
-def _hsu_growth(model: ProportionalGearbox, label: str, speed: float) -> tuple[float, float]:
+def _hsu_growth(model: ProportionalGearbox, combination: Combination, speed: float) -> tuple[float, float]:
     """Growth rate (2-26) of a resonance of one mode without modulation, −f/2, and at depth 1; linear between them."""
-    modes, order = label.split("/")
-    number, s = int(modes.strip("()").split("+")[0]), int(order)
+    number, s = combination.k, combination.order
     form = standard_form(model.system(speed), s)
     at_rest = -float(form.F0[number - 1, number - 1]) / 2.0
     return at_rest, form.growth_rate(number, number, "sum", s, 2.0 * float(form.frequencies[number - 1]) / s)

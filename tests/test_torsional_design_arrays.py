@@ -12,6 +12,7 @@ from facegear.floquet import growth_rate
 from facegear.gearboxes import DRIVE, FIGURES
 from facegear.geometry import Drive
 from facegear.hsu import resonance_bands
+from facegear.labels import Combination
 from facegear.modulation_arrays import ScaledModulation, undamped
 from facegear.parameters import MeshLoad, rad_per_s, rpm
 from facegear.plate import Body
@@ -70,7 +71,7 @@ class TestScaledModulation:
 
 
 def test_hsu_errs_by_the_square_of_the_modulation():
-    data = modulation_arrays.hsu_errors([(LIGHT, "(1+1)/1")], [0.02, 0.05])
+    data = modulation_arrays.hsu_errors([(LIGHT, Combination(1, 1, "sum", 1))], [0.02, 0.05])
     assert modulation_arrays.fitted_orders(data, "border_error", 0.1)[0] == pytest.approx(2.0, abs=0.05)
     assert modulation_arrays.fitted_orders(data, "width", 0.1)[0] == pytest.approx(1.0, abs=0.05)
     (band,) = [
@@ -85,11 +86,11 @@ def test_hsu_errs_by_the_square_of_the_modulation():
 
 def test_resonance_that_hsu_does_not_know_is_refused():
     with pytest.raises(ValueError, match="resonances must have one band"):
-        modulation_arrays.hsu_errors([(LIGHT, "(1+7)/1")], [0.02])
+        modulation_arrays.hsu_errors([(LIGHT, Combination(1, 7, "sum", 1))], [0.02])
 
 
 def test_opening_depth_is_where_independent_growth_changes_sign():
-    data = modulation_arrays.openings(LIGHT, {"(1+1)/1": (620, 670)}, [0.15, 0.2, 0.25])
+    data = modulation_arrays.openings(LIGHT, {Combination(1, 1, "sum", 1): (620, 670)}, [0.15, 0.2, 0.25])
     opening, n = float(data.opening[0]), numbers_of(LIGHT.gearbox)
     assert 0.2 < opening < 0.21
     assert float(data.hsu_opening[0]) == pytest.approx(opening, rel=0.01)

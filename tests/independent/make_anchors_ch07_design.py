@@ -125,13 +125,11 @@ def undamped_border(n, lower_rpm, upper_rpm, depth, side):
 
 
 def hsu_errors():
-    chosen = [("7.12a", f"(1+1)/{s}") for s in (1, 2, 3, 4)] + [("7.13a", f"(1+2)/{s}") for s in (1, 2)]
+    chosen = [("7.12a", 0, 0, s) for s in (1, 2, 3, 4)] + [("7.13a", 0, 1, s) for s in (1, 2)]
     for row, depth in ((0, 0.1), (1, 0.03), (2, 0.1), (3, 0.1), (4, 0.1), (5, 0.1)):
-        name, label = chosen[row]
+        name, k, j, s = chosen[row]
         gearbox = undamped(CASES[name])
         n = numbers_of(gearbox.gearbox)
-        modes, s = label.strip("(").split(")/")
-        (k, j), s = (int(mode) - 1 for mode in modes.split("+")), int(s)
         # Hsu's borders on paper: the mean, the s-th harmonic of K in modal coordinates, no damping.
         K0 = integrals(n, 1.0, lambda x: 1.0)[1]
         root = np.sqrt(np.array([n.J1, n.J2, n.Jo]))
@@ -151,6 +149,7 @@ def hsu_errors():
         middle = (w[k] + w[j]) / s / n.N2
         model = ScaledModulation(gearbox, depth)
         reach = 2 * half / s / n.N2
+        label = f"({k + 1}+{j + 1})/{s}"
         found = [t for t in tongues(model, middle - 2 * reach, middle + 2 * reach) if t.label == label]
         low, high = float(fg.rpm(found[0].lower)), float(fg.rpm(found[-1].upper))
         for side in ("lower", "upper"):
