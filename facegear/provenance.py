@@ -48,7 +48,7 @@ def commit_of(package: Path) -> str:
     if not _git(package, "ls-files", "--", "__init__.py"):
         return ""
     commit = _git(package, "rev-parse", "HEAD")
-    changes = _git(package, "status", "--porcelain", "--", ".", ":/notebooks")
+    changes = _git(package, "--no-optional-locks", "status", "--porcelain", "--", ".", ":/notebooks")
     return commit + CHANGED * bool(changes)
 
 

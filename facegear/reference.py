@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -200,7 +201,7 @@ def save(dataset: xr.Dataset, path: str | Path) -> Path:
     Raises
     ------
     ValueError
-        If a variable lacks an attribute, or has values that netCDF 3 cannot hold.
+        If a variable lacks an attribute, or numbers or text are such that netCDF 3 cannot hold them.
 
     Notes
     -----
@@ -219,6 +220,7 @@ def save(dataset: xr.Dataset, path: str | Path) -> Path:
         if variable.dtype.kind not in "fi":
             raise ValueError(f"variable '{name}' has type {variable.dtype}; store real or integer numbers")
     stored = _with_rows(_as_netcdf3(dataset))
+    _check_text(stored)
     # What was loaded from another file keeps nothing of how that one was made.
     stored.attrs = {key: value for key, value in stored.attrs.items() if key not in _PROVENANCE}
     stored.attrs |= made_by() | {
@@ -345,6 +347,18 @@ def _as_netcdf3(dataset: xr.Dataset) -> xr.Dataset:
         converted[name].encoding["_FillValue"] = None
     converted.attrs = {key: _plain(value) for key, value in dataset.attrs.items()}
     return converted
+
+
+def _check_text(dataset: xr.Dataset) -> None:
+    """Refuse text that would not come back: netCDF ends it at a zero, UTF-8 has no halves of surrogate pairs."""
+    texts = [(f"attribute '{key}'", value) for key, value in dataset.attrs.items()]
+    for name, variable in dataset.variables.items():
+        texts += [(f"attribute '{key}' of '{name}'", value) for key, value in variable.attrs.items()]
+        if variable.dtype.kind == "U":
+            texts += [(f"coordinate '{name}'", value) for value in variable.values.ravel().tolist()]
+    for place, value in texts:
+        if isinstance(value, str) and re.search("[\0\ud800-\udfff]", value):
+            raise ValueError(f"{place} = {value!r} holds a character that a netCDF file cannot")
 
 
 def _nothing(dtype: np.dtype[Any]) -> Any:

@@ -72,6 +72,18 @@ def test_tables_and_their_text_come_back(tmp_path, names):
         assert ("length_of_tongue" in raw.attrs) == (not names)
 
 
+@pytest.mark.parametrize("wrong", ["a\x00", "\x00b", "a\ud800"])
+def test_text_that_would_not_come_back_is_refused(tmp_path, wrong):
+    for table, place in (
+        (table_of(["x"]).assign_attrs(parameters=wrong), "attribute 'parameters' = "),
+        (table_of([f"{wrong}."]), "coordinate 'label' = "),
+        (with_attribute("mesh", long_name=wrong)(table_of(["x"])), "attribute 'long_name' of 'mesh' = "),
+    ):
+        with pytest.raises(ValueError, match=place):
+            reference.save(table, tmp_path / "table.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_nan_is_a_value_that_agrees_with_itself_only(tmp_path):
     with_gap = figure()
     with_gap["radius"][0, 0] = np.nan
