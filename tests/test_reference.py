@@ -72,6 +72,19 @@ def test_tables_and_their_text_come_back(tmp_path, names):
         assert ("length_of_tongue" in raw.attrs) == (not names)
 
 
+@pytest.mark.parametrize("names", [[], ["(1+1)/1", "mean 2"]], ids=["none", "two"])
+def test_an_axis_of_text_comes_back(tmp_path, names):
+    chart = xr.Dataset(
+        {"line": reference.variable(("label", "speed"), np.ones((len(names), 2)), "Line", "Hz", 0, 1e-3)},
+        coords={"label": reference.text("label", names, "Label"), "speed": [1.0, 2.0]},
+        attrs={"parameters": "none"},
+    )
+    stored = reference.load(reference.save(chart, tmp_path / "chart.nc"))
+    reference.compare(chart, stored)
+    assert stored["label"].values.tolist() == names
+    assert stored["line"].shape == (len(names), 2)
+
+
 @pytest.mark.parametrize("wrong", ["a\x00", "\x00b", "a\ud800"])
 def test_text_that_would_not_come_back_is_refused(tmp_path, wrong):
     for table, place in (
