@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.parameters import finite, nonnegative, positive, within
+from facegear.parameters import finite, finite_array, nonnegative, positive, within
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
 
@@ -201,7 +201,10 @@ def meissner_trace(
     array
         Of the broadcast shape [-].
     """
-    w, eps, d = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (frequency, depth, duty)))
+    given = {"frequency": frequency, "depth": depth, "duty": duty}
+    w, eps, d = np.broadcast_arrays(*(finite_array(name, values) for name, values in given.items()))
+    damping_ratio = finite("damping_ratio", damping_ratio)
+    natural_frequency = finite("natural_frequency", natural_frequency, "rad/s")
     period = 2.0 * np.pi / w
     # Complex, because the softer part has no frequency where ε + ζ² > 1.
     p, r = (natural_frequency * np.sqrt(1.0 + sign * eps - damping_ratio**2 + 0j) for sign in (1.0, -1.0))

@@ -215,7 +215,7 @@ def largest_power(
     """
     if model.power_speed is None:
         raise ValueError("model must have a power and a power_speed, got None")
-    within("tolerance", tolerance, 1e-6, 0.1)
+    tolerance = within("tolerance", tolerance, 1e-6, 0.1)
     low, high = (
         positive("lowest_speed", lowest_speed, "rad/s"),
         positive("highest_speed", highest_speed, "rad/s"),

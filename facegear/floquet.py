@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear import collocation
-from facegear.parameters import integer_at_least, within
+from facegear.parameters import integer_at_least, keep, within
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
 from facegear.stepping import Family, aligned_edges, gauss_magnus, midpoint
@@ -56,7 +56,7 @@ class Stepwise:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        integer_at_least("sub_intervals", self.sub_intervals, 1)
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`; refuses the velocity kicks of a contact mass with total rate."""
@@ -86,7 +86,7 @@ class AlignedStepwise:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        integer_at_least("sub_intervals", self.sub_intervals, 1)
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
@@ -113,7 +113,7 @@ class Magnus:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        integer_at_least("sub_intervals", self.sub_intervals, 1)
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
@@ -142,7 +142,7 @@ class AdaptiveMagnus:
     tolerance: float = 1e-10
 
     def __post_init__(self) -> None:
-        within("tolerance", self.tolerance, 1e-13, 1e-2)
+        keep(self, tolerance=within("tolerance", self.tolerance, 1e-13, 1e-2))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
@@ -193,9 +193,12 @@ class Collocation:
     panel_angle: float = collocation.DEFAULT_PANEL_ANGLE
 
     def __post_init__(self) -> None:
-        integer_at_least("nodes", self.nodes, 2)
-        # Beyond 14 rad the kernel of a heavily damped mode loses its digits.
-        within("panel_angle", self.panel_angle, 0.1, 14.0)
+        keep(
+            self,
+            nodes=integer_at_least("nodes", self.nodes, 2),
+            # Beyond 14 rad the kernel of a heavily damped mode loses its digits.
+            panel_angle=within("panel_angle", self.panel_angle, 0.1, 14.0),
+        )
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""

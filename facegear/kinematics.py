@@ -147,7 +147,7 @@ class _TimedPairs(ABC, Generic[States]):
     contact_ratio: float = field(default=None)  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "contact_ratio", checked_contact_ratio(self.drive, self.contact_ratio))
+        parameters.keep(self, contact_ratio=checked_contact_ratio(self.drive, self.contact_ratio))
 
     @property
     def pairs(self) -> int:

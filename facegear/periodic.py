@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.parameters import nonnegative, one_of, positive
+from facegear.parameters import finite_array, keep, nonnegative, one_of, positive
 from facegear.piecewise import (
     Array,
     FourierSeries,
@@ -67,7 +67,7 @@ class ContactLoad:
             raise TypeError(f"shape must be a PiecewiseChebyshev; got {type(self.shape).__name__}")
         for name in ("stiffness", "damping", "mass"):
             value = getattr(self, name)
-            object.__setattr__(self, name, nonnegative(name, value))
+            keep(self, **{name: nonnegative(name, value)})
         one_of("rate", self.rate, ("frozen", "total"))
         if self.weight is not None and self.weight.components != 1:
             raise ValueError(f"weight must have one component; got {self.weight.components}")
@@ -133,7 +133,7 @@ class PeriodicSystem:
             matrix = real_array(getattr(self, name), name, 2)
             if matrix.shape != (size, size) or size == 0:
                 raise ValueError(f"{name} must be square and as large as mass; got shape {matrix.shape}")
-            object.__setattr__(self, name, matrix)
+            keep(self, **{name: matrix})
         if np.abs(self.mass - self.mass.T).max() > 1e-12 * np.abs(self.mass).max():
             raise ValueError("mass must be symmetric; got a non-symmetric matrix")
         try:
@@ -142,7 +142,7 @@ class PeriodicSystem:
             raise ValueError(
                 "mass must be positive definite; got a matrix with a non-positive eigenvalue"
             ) from None
-        object.__setattr__(self, "loads", tuple(self.loads))
+        keep(self, loads=tuple(self.loads))
         for number, load in enumerate(self.loads):
             if not isinstance(load, ContactLoad):
                 raise TypeError(f"loads[{number}] must be a ContactLoad; got {type(load).__name__}")
@@ -151,7 +151,7 @@ class PeriodicSystem:
                     f"loads[{number}].shape must have {size} components, one a coordinate; "
                     f"got {load.shape.components}"
                 )
-        object.__setattr__(self, "period", positive("period", self.period, "s"))
+        keep(self, period=positive("period", self.period, "s"))
 
     @property
     def size(self) -> int:
@@ -293,7 +293,7 @@ class PeriodicSystem:
         """Return one value a load: those given, or else the present ones."""
         if values is None:
             return [float(getattr(load, name)) for load in self.loads]
-        array = np.asarray(values, dtype=float)
+        array = finite_array(name, values)
         if array.shape not in ((), (len(self.loads),)):
             raise ValueError(
                 f"{name} must be one number or {len(self.loads)}, one a load; got shape {array.shape}"
@@ -328,7 +328,8 @@ class LoadColumn:
 
     def __post_init__(self) -> None:
         for name in ("mass", "damping", "stiffness"):
-            values = getattr(self, name)
+            values = np.asarray(getattr(self, name), dtype=np.float64)
+            keep(self, **{name: values})
             if values.shape != self.mass.shape or values.ndim != 2:
                 raise ValueError(f"{name} must have shape (values, loads) as the others; got {values.shape}")
             if not np.isfinite(values).all() or (values < 0.0).any():

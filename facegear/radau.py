@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from facegear.parameters import integer_at_least, within
+from facegear.parameters import integer_within, keep, within
 from facegear.piecewise import SAME_INSTANT, Array
 from facegear.stepping import Family
 
@@ -89,9 +89,11 @@ class Radau:
     tolerance: float = 1e-11
 
     def __post_init__(self) -> None:
-        if integer_at_least("stages", self.stages, 3) > 40:
-            raise ValueError(f"stages must lie between 3 and 40, got {self.stages!r}")
-        within("tolerance", self.tolerance, 1e-15, 1e-2)
+        keep(
+            self,
+            stages=integer_within("stages", self.stages, 3, 40),
+            tolerance=within("tolerance", self.tolerance, 1e-15, 1e-2),
+        )
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`facegear.floquet.Method`."""

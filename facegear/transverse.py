@@ -37,6 +37,8 @@ from facegear.parameters import (
     MeshLoad,
     finite_array,
     integer_at_least,
+    keep,
+    nonnegative,
     one_of,
     positive,
     within,
@@ -222,10 +224,16 @@ class Transverse:
                 f"power and power_speed go together, got power={self.power!r}, power_speed={self.power_speed!r}"
             )
         one_of("following", self.following, ("follower", "dead"))
-        integer_at_least("stress_harmonics", self.stress_harmonics, 0)
-        _ = self.driving_force
+        keep(self, stress_harmonics=integer_at_least("stress_harmonics", self.stress_harmonics, 0))
+        if self.power is not None:
+            keep(
+                self,
+                power=nonnegative("power", self.power, "W"),
+                power_speed=positive("power_speed", self.power_speed, "rad/s"),
+            )
         # Fails here rather than at the first use if the contact ratio is not valid.
         path = ContactPath(self.body.drive, self.mesh_contact_ratio)
+        keep(self, contact_ratio=None if self.contact_ratio is None else path.contact_ratio)
         if self.rate == "total":
             path.require_finite_speed("rate = 'total'")
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
@@ -237,7 +245,7 @@ class Transverse:
         gaps[-1] = 2 * math.pi - np.ptp(np.mod(angles, 2 * math.pi))
         if gaps.min() < 1e-6:
             raise ValueError(f"pinion_angles must differ from one another, got {self.pinion_angles!r}")
-        object.__setattr__(self, "pinion_angles", tuple(angles.tolist()))
+        keep(self, pinion_angles=tuple(angles.tolist()))
 
     @property
     def mesh_contact_ratio(self) -> float:
