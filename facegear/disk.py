@@ -74,7 +74,8 @@ def shape_vector(body: Body, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
     ValueError
         If a radius lies off the disk.
     """
-    return unit_shape(body.modes, np.divide(radius, body.outer_radius), angle) / body.outer_radius
+    x = finite_array("radius", radius, "m") / body.outer_radius
+    return unit_shape(body.modes, x, finite_array("angle", angle, "rad")) / body.outer_radius
 
 
 def unit_shape(

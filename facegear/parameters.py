@@ -141,6 +141,19 @@ def angle_within(name: str, value: Any, lowest_deg: float, highest_deg: float) -
     )
 
 
+def whole_number(name: str, value: Any, which: str = "") -> int:
+    """Check that `value` is an integer, of any sign, and return it as an int; `which` goes into the message.
+
+    Raises
+    ------
+    TypeError
+        Not an integer; a float with an integer value is none.
+    """
+    if isinstance(value, _NO_NUMBERS) or not isinstance(value, Integral):
+        raise TypeError(f"{name} must be an integer{which}, got {_plain(value)!r}")
+    return int(value)
+
+
 def integer_at_least(name: str, value: Any, lowest: int) -> int:
     """Check that `value` is a whole number of at least `lowest` and return it as an int.
 
@@ -151,9 +164,7 @@ def integer_at_least(name: str, value: Any, lowest: int) -> int:
     ValueError
         Below `lowest`.
     """
-    if isinstance(value, _NO_NUMBERS) or not isinstance(value, Integral):
-        raise TypeError(f"{name} must be an integer of at least {lowest}, got {_plain(value)!r}")
-    number = int(value)
+    number = whole_number(name, value, f" of at least {lowest}")
     if number < lowest:
         raise ValueError(f"{name} must be at least {lowest}, got {number!r}")
     return number
@@ -274,7 +285,7 @@ def known_keys(
 
 def _converted(name: str, values: ArrayLike, factor: float) -> Any:
     """Values times a factor, in float64 whatever their own type: a float for a number, else an array."""
-    if isinstance(values, _NO_NUMBERS):
+    if np.asarray(values).dtype.kind not in "iuf":
         raise TypeError(f"{name} must be real numbers, got {_plain(values)!r}")
     product = np.multiply(values, factor, dtype=np.float64)[()]
     return float(product) if np.ndim(product) == 0 else product

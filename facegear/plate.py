@@ -17,7 +17,16 @@ from numpy.typing import ArrayLike
 from scipy import linalg, optimize, special
 
 from facegear.geometry import Drive
-from facegear.parameters import STEEL, FloatArray, Material, integer_within, keep, within
+from facegear.parameters import (
+    STEEL,
+    FloatArray,
+    Material,
+    finite,
+    finite_array,
+    integer_within,
+    keep,
+    within,
+)
 
 BORE_RATIO_RANGE = (0.05, 0.9)
 MAX_NODAL_CIRCLES = 4
@@ -186,8 +195,8 @@ def centrifugal_stress(
         σ_r and σ_θ over ρ a² Ω² [-], of the shape of `x`. No displacement at the bore, no radial stress at
         the rim.
     """
-    x = np.asarray(x, dtype=float)
-    nu, c2 = poissons_ratio, bore_ratio**2
+    x = finite_array("x", x)
+    nu, c2 = finite("poissons_ratio", poissons_ratio), finite("bore_ratio", bore_ratio) ** 2
     d8 = 8 * ((1 + nu) + (1 - nu) * c2)
     b0 = (1 - nu) * c2 * ((3 + nu) - (1 + nu) * c2) / d8
     b1 = (1 + nu) * ((3 + nu) + (1 - nu) * c2**2) / d8
