@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from facegear.parameters import finite, finite_array, nonnegative, positive, within
 from facegear.periodic import ContactLoad, PeriodicSystem
-from facegear.piecewise import Array, PiecewiseChebyshev
+from facegear.piecewise import SAME_INSTANT, Array, PiecewiseChebyshev
 
 
 @lru_cache(maxsize=1)
@@ -60,6 +60,10 @@ def tooth_pair_wave(contact_ratio: float, droop: float) -> PiecewiseChebyshev:
     """
     contact_ratio = within("contact_ratio", contact_ratio, 1.0, 5.0)
     droop = within("droop", droop, 0.0, 1.0)
+    # So close to a whole number a pair leaves as the next one enters.
+    nearest = round(contact_ratio)
+    if abs(contact_ratio - nearest) <= SAME_INSTANT:
+        contact_ratio = float(nearest)
     whole = int(np.floor(contact_ratio))
     rest = contact_ratio - whole
     breakpoints = [0.0] if rest == 0.0 else [0.0, rest]

@@ -94,6 +94,10 @@ class RadialModes:
         slack = 1e-12
         if not np.all((x >= self.bore_ratio - slack) & (x <= 1.0 + slack)):
             raise ValueError(f"x must lie between the bore ratio {self.bore_ratio} and 1, got {x}")
+        return self.continued(x, derivative)
+
+    def continued(self, x: FloatArray, derivative: int = 0) -> FloatArray:
+        """Evaluate as by a call, beyond the rim too: the functions (4-6) go on there, smooth as on the plate."""
         values = np.empty((self.roots.size, *x.shape))
         for row, (root, factors) in enumerate(zip(self.roots, self.coefficients, strict=True)):
             bessel = _bessel_functions(self.nodal_diameters, root, x, self.bore_ratio)

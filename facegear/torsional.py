@@ -375,6 +375,8 @@ class Torsional:
         if self.arm == "printed" and self.path != "skew_line":
             path = ContactPath(self.box.drive, self.box.mesh_contact_ratio)
             path.require_finite_speed(f"path = {self.path!r}")
+            if self.path == "centroid":
+                path.require_slow_centroid("path = 'centroid'")
 
     @property
     def _mesh(self) -> _Mesh:

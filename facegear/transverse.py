@@ -169,9 +169,9 @@ class Transverse:
         θ_c of each pinion [rad], between -2π and 2π and all different. What is left of an angle after whole
         teeth sets the phase of the pinion's mesh (5-1 to 5-4).
     contact_ratio : float, optional
-        Mesh periods that a tooth pair stays in mesh. Default None: Tregold's, as printed, that of whatever drive
-        the body has (`mesh_contact_ratio`); `drive.geometric_contact_ratio` is that of the true sweep. A number
-        stays when the drive is replaced.
+        Mesh periods that a tooth pair stays in mesh, 1 or more, and 1.001 or more with total rate. Default None:
+        Tregold's, as printed, that of whatever drive the body has (`mesh_contact_ratio`);
+        `drive.geometric_contact_ratio` is that of the true sweep. A number stays when the drive is replaced.
     rate : {"frozen", "total"}
         Whether the pinion follows ∂w/∂t at the contact centroid ("frozen", as printed in 4-1) or the deflection
         under the moving centroid ("total").
@@ -236,6 +236,7 @@ class Transverse:
         keep(self, contact_ratio=None if self.contact_ratio is None else path.contact_ratio)
         if self.rate == "total":
             path.require_finite_speed("rate = 'total'")
+            path.require_slow_centroid("rate = 'total'")
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
         if angles.ndim != 1 or angles.size == 0:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
