@@ -302,4 +302,5 @@ def spin_per_speed(body: Body) -> float:
 
 def fastest_speed(body: Body) -> float:
     """Speed Ω2 up to which the plane field of a rotating disk is computed, Ω* = `FASTEST_SPIN` [rad/s]."""
-    return FASTEST_SPIN / spin_per_speed(body)
+    # Less the rounding of the product that leads back to Ω*.
+    return FASTEST_SPIN * (1.0 - 1e-12) / spin_per_speed(body)
