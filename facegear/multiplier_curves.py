@@ -16,7 +16,14 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from facegear.collocation import UnsuitableSystemError, is_suitable
-from facegear.floquet import AdaptiveMagnus, Collocation, Method, transition_matrices
+from facegear.floquet import (
+    AdaptiveMagnus,
+    Collocation,
+    Method,
+    disturbed,
+    rounding_error,
+    transition_matrices,
+)
 from facegear.lobatto import interleaved, lobatto_points, values_to_coefficients
 from facegear.models import Model
 from facegear.periodic import PeriodicSystem
@@ -266,8 +273,14 @@ def _windows(
 
 
 def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:
-    """Largest distance of a multiplier of the curve to the nearest of a refined method, those inside 1/2 left out."""
-    coarse = np.linalg.eigvals(curve.transition_matrices(np.array([speed]))[0])
-    fine = np.linalg.eigvals(transition_matrices([system], method.refined())[0])
-    distance = np.abs(coarse[:, None] - fine[None, :]).min(axis=1)
-    return float(distance[np.abs(coarse) > 0.5].max(initial=0.0))
+    """Error of a multiplier of the curve, those inside 1/2 left out: distance to a refined method's, and rounding."""
+    matrix = curve.transition_matrices(np.array([speed]))[0]
+    coarse = np.linalg.eigvals(matrix)
+    fine = np.linalg.eigvals(transition_matrices([system], method.refined()))
+    rounding = rounding_error(matrix, Family([system]), method)
+    moved = np.linalg.eigvals(disturbed(matrix, rounding))
+    distance, shift = (
+        np.abs(coarse[:, None] - others[:, None, :]).min(axis=2).max(axis=0) for others in (fine, moved)
+    )
+    errors = distance + np.maximum(shift, rounding)
+    return float(errors[np.abs(coarse) > 0.5].max(initial=0.0))

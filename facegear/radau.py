@@ -123,6 +123,10 @@ class Radau:
         """Four more nodes a panel and a hundredth of the tolerance."""
         return Radau(min(self.stages + 4, 40), max(self.tolerance / 100.0, 1e-15))
 
+    def rounding(self, family: Family) -> float:
+        """See :class:`facegear.floquet.Method`: what dies within a panel leaves no rounding behind."""
+        return family.fastest_angle
+
 
 def _graded_edges(family: Family, panel_angle: float, dead: float) -> Array:
     """Place the first ends of panels: short after each breakpoint, longer where fast motions have died.
