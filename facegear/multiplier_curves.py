@@ -45,6 +45,8 @@ _MOST_CUTS = 12
 _DEAD = 30.0
 # Slowness of systems computed together differs by this factor at most: they share panels or sub-intervals.
 _TOGETHER = 1.4
+# Matrices of which eigenvalues are found at once, and the sum of the third powers of their sizes.
+_MOST_AT_ONCE, _CUBES_AT_ONCE = 512, 100_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,6 +138,10 @@ class _Window:
         return np.tensordot(basis, coefficients, axes=1)
 
 
+def _unheard(count: int) -> None:
+    """Do nothing with a number of matrices."""
+
+
 @dataclass(frozen=True, eq=False)
 class MultiplierCurve:
     """Floquet multipliers of a model against speed, from interpolated transition matrices.
@@ -151,6 +157,8 @@ class MultiplierCurve:
         How fast the model moves and what dies within a period.
     windows : tuple
         Series on parts of the range.
+    looked_at : callable
+        Told the number of matrices whenever some are interpolated, for a progress bar.
     """
 
     model: Model
@@ -159,12 +167,20 @@ class MultiplierCurve:
     highest_speed: float
     motions: FrozenMotions
     windows: tuple[_Window, ...]
+    looked_at: Callable[[int], object] = _unheard
 
     @classmethod
     def of(
-        cls, model: Model, lowest_speed: float, highest_speed: float, method: Method | None = None
+        cls,
+        model: Model,
+        lowest_speed: float,
+        highest_speed: float,
+        method: Method | None = None,
+        looked_at: Callable[[int], object] = _unheard,
     ) -> MultiplierCurve:
         """Interpolate the transition matrices of a model between two speeds [rad/s].
+
+        `looked_at` is told the number of matrices whenever some have been computed or interpolated.
 
         Raises
         ------
@@ -180,6 +196,7 @@ class MultiplierCurve:
             for part in _neighbours(slowness):
                 systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
                 found[part] = _family_matrices(systems, chosen)
+                looked_at(len(systems))
             return np.asarray(scale @ found @ inverse, dtype=float)
 
         motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
@@ -188,7 +205,7 @@ class MultiplierCurve:
             for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
             for window in _windows(matrices, motions, low, high, _MOST_CUTS)
         ]
-        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows))
+        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
 
     @cached_property
     def error(self) -> float:
@@ -207,6 +224,7 @@ class MultiplierCurve:
 
     def _by_window(self, speeds: Array, evaluate: Callable[[_Window, Array], Array]) -> Array:
         slowness = 1.0 / np.asarray(speeds, dtype=float)
+        self.looked_at(slowness.size)
         if len(self.windows) == 1:
             return evaluate(self.windows[0], slowness)
         found = np.empty((slowness.size, *self.windows[0].coefficients.shape[1:]))
@@ -219,8 +237,16 @@ class MultiplierCurve:
 
     def spectral_radii(self, speeds: Array) -> Array:
         """max|α| at speeds (m,)."""
-        matrices = self.transition_matrices(np.atleast_1d(speeds))
-        return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
+        speeds = np.atleast_1d(speeds)
+        parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
+        eigenvalues = [np.linalg.eigvals(self.transition_matrices(part)) for part in parts]
+        return np.asarray(np.abs(np.concatenate(eigenvalues)).max(axis=-1), dtype=float)
+
+    @property
+    def batch(self) -> int:
+        """Matrices worked on at once: what takes a second or so, for no interruption is heard meanwhile."""
+        size = self.windows[0].coefficients.shape[-1]
+        return int(max(1, min(_MOST_AT_ONCE, _CUBES_AT_ONCE // size**3)))
 
 
 def method_for(model: Model, lowest_speed: float, highest_speed: float) -> Method:

@@ -143,7 +143,8 @@ def _graded_edges(family: Family, panel_angle: float, dead: float) -> Array:
         length = end - start
         death = np.minimum(dead / np.maximum(-rates.real, dead / (2.0 * length)), length)
         places = np.unique(np.append(death, [0.0, length]))
-        fastest = [np.abs(rates[death >= place]).max() for place in places[1:]]
+        # Where every motion has died, one panel spans the rest.
+        fastest = [np.abs(rates[death >= place]).max(initial=0.0) for place in places[1:]]
         angle = np.append(0.0, np.cumsum(fastest * np.diff(places)))
         count = max(1, int(np.ceil(angle[-1] / panel_angle)))
         parts.append(start + np.interp(np.linspace(0.0, angle[-1], count + 1)[:-1], angle, places))
