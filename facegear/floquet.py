@@ -379,6 +379,15 @@ def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> A
     return np.asarray(np.max([apart(x) for x in judged.finer], axis=0) + rounding, dtype=float)
 
 
+def rounding_shift(system: PeriodicSystem, method: Method) -> float:
+    """Part of :func:`error_estimate` that is due to rounding: how far it moves a multiplier that may be the largest."""
+    family = Family([system])
+    scaled = method.scaled_transition_matrices(family)[0]
+    rounding = rounding_error(scaled, family, method)
+    radii = np.abs(_eigenvalues(disturbed(scaled, rounding))).max(axis=-1)
+    return float(max(rounding, np.abs(radii - np.abs(_eigenvalues(scaled)).max()).max()))
+
+
 @dataclass(frozen=True, eq=False)
 class _Judged:
     """Multipliers of a method, those of two refinements, and those of its Φ disturbed by as much as its rounding."""

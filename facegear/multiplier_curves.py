@@ -92,7 +92,8 @@ class FrozenMotions:
         """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range."""
         slowness, angle = self.live_angle
         density = angle / step + fewest * (slowness - self.low) / (self.high - self.low)
-        places = np.linspace(0.0, density[-1], int(np.ceil(density[-1])) + 1)
+        # Where nothing oscillates there are the two ends.
+        places = np.linspace(0.0, density[-1], max(int(np.ceil(density[-1])), 1) + 1)
         points = np.interp(places, density, slowness)
         points[[0, -1]] = self.low, self.high
         return np.asarray(points, dtype=float)
@@ -200,10 +201,13 @@ class MultiplierCurve:
             return np.asarray(scale @ found @ inverse, dtype=float)
 
         motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
+        # No series resolves rounding, which is largest in the longest period.
+        rounding = rounding_error(np.eye(len(scale)), Family([model.system(lowest_speed)]), chosen)
+        tolerance = max(_TOLERANCE, 4.0 * rounding)
         windows = [
             window
             for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
-            for window in _windows(matrices, motions, low, high, _MOST_CUTS)
+            for window in _windows(matrices, motions, low, high, tolerance, _MOST_CUTS)
         ]
         return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
 
@@ -275,7 +279,12 @@ def _neighbours(slowness: Array) -> list[NDArray[np.intp]]:
 
 
 def _windows(
-    evaluate: Callable[[Array], Array], motions: FrozenMotions, low: float, high: float, cuts: int
+    evaluate: Callable[[Array], Array],
+    motions: FrozenMotions,
+    low: float,
+    high: float,
+    tolerance: float,
+    cuts: int,
 ) -> list[_Window]:
     """Series on one window, or on halves of it where its degree does not suffice."""
     middle, half = (low + high) / 2.0, (high - low) / 2.0
@@ -286,7 +295,7 @@ def _windows(
             values = interleaved(values, evaluate(middle + half * lobatto_points(degree)[1::2]))
         coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
         tail = np.abs(coefficients[-2:]).max()
-        if tail <= _TOLERANCE * max(1.0, float(np.abs(values).max())):
+        if tail <= tolerance * max(1.0, float(np.abs(values).max())):
             return [_Window(low, high, coefficients)]
         degree *= 2
     if cuts == 0:
@@ -295,7 +304,7 @@ def _windows(
             f"the last Chebyshev coefficient is {tail:.2g}"
         )
     halves = ((low, middle), (middle, high))
-    return [window for part in halves for window in _windows(evaluate, motions, *part, cuts - 1)]
+    return [window for part in halves for window in _windows(evaluate, motions, *part, tolerance, cuts - 1)]
 
 
 def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:

@@ -1,6 +1,7 @@
 """Error estimates against multipliers known to forty digits: stiff, overdamped and drifting systems among them."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
@@ -14,8 +15,11 @@ from facegear.floquet import (
     multiplier_errors,
     multipliers,
 )
+from facegear.maps import stability_map
+from facegear.multiplier_curves import MultiplierCurve
 from facegear.periodic import PeriodicSystem
 from facegear.radau import Radau
+from facegear.tracing import tongues
 from tests.independent import stiff_systems
 
 
@@ -70,3 +74,33 @@ def test_what_is_left_of_a_dead_motion_is_below_its_error():
         assert slow == pytest.approx(math.exp(-100.0 * (25.0 - math.sqrt(624.0))), rel=1e-10)
         assert slow > 1e9 * errors[0]
         assert fast < errors[1] < 1e-9
+
+
+@dataclass(frozen=True)
+class Damped:
+    """One coordinate with a strong damper, over the frequency of nothing."""
+
+    damping: float
+
+    def system(self, speed):
+        return PeriodicSystem(np.eye(1), [[self.damping]], np.eye(1), (), 2.0 * np.pi / speed)
+
+
+def test_a_map_and_a_curve_count_rounding_too():
+    values, speeds = np.array([3e6, 1e7]), np.array([1.0, 2.0])
+    chart = stability_map(Damped(1.0), speeds, "damping", values, method=Magnus(16), jobs=1)
+    truth = -2.0 / (values + np.sqrt(values**2 - 4.0))
+    error = np.abs(
+        np.exp(2 * np.pi / speeds * chart.values) - np.exp(np.outer(truth, 2 * np.pi / speeds))
+    ).max()
+    assert 1e-12 < error < 10.0 * chart.attrs["error_estimate"]
+    curve = MultiplierCurve.of(Damped(1e7), 1.0, 2.0, Magnus(16))
+    radii = curve.spectral_radii(np.array([1.3]))
+    error = abs(radii[0] - np.exp(truth[1] * 2 * np.pi / 1.3))
+    assert 1e-12 < error < 10.0 * curve.error
+
+
+def test_dampers_too_strong_for_the_threshold_are_refused_with_a_way_out():
+    with pytest.raises(ArithmeticError, match=r"known to .* only, rounding counted.*facegear\.radau\.Radau"):
+        tongues(Damped(1e9), 1.0, 2.0, method=Magnus(16))
+    assert tongues(Damped(1e7), 1.0, 2.0, method=Radau()) == ()

@@ -411,10 +411,10 @@ def test_few_matrices_are_worked_on_at_once_so_that_an_interruption_is_heard(mon
 def test_cost_grows_with_size_and_range():
     small = Transverse(Body(Drive(26, 130, 3.175e-3), 0.03), MeshLoad(1.0, 3e-6, 1.0))
     large = Transverse(
-        Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=4, nodal_diameters=10), MeshLoad(1.0, 3e-6, 1.0)
+        Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=2, nodal_diameters=6), MeshLoad(1.0, 3e-6, 1.0)
     )
     ends = [float(rad_per_s(speed)) for speed in (400.0, 600.0)]
-    assert search_seconds(small, *ends) < 1.0 < 60.0 < search_seconds(large, *ends) < 3600.0
+    assert search_seconds(small, *ends) < 1.0 < 3.0 < search_seconds(large, *ends) < 60.0
     assert search_seconds(small, ends[0] / 4.0, ends[1]) > search_seconds(small, *ends)
     with pytest.raises(ValueError, match="speed_range must ascend"):
         search_seconds(small, *ends[::-1])
