@@ -124,8 +124,8 @@ class Radau:
         return Radau(min(self.stages + 4, 40), max(self.tolerance / 100.0, 1e-15))
 
     def rounding(self, family: Family) -> float:
-        """See :class:`facegear.floquet.Method`: what dies within a panel leaves no rounding behind."""
-        return family.fastest_angle
+        """See :class:`facegear.floquet.Method`: an angle as of its first panels, dead motions leave none behind."""
+        return _PANEL_ANGLE * (_graded_edges(family, _PANEL_ANGLE, -np.log(self.tolerance)).size - 1)
 
 
 def _graded_edges(family: Family, panel_angle: float, dead: float) -> Array:
