@@ -32,6 +32,7 @@ _PUBLIC = {
     "stability_map": "maps",
     "Tongue": "tracing",
     "borders": "tracing",
+    "search_seconds": "tracing",
     "tongues": "tracing",
     # plate, inplane, transverse
     "Body": "plate",
