@@ -138,7 +138,7 @@ def tongues(
     # tqdm itself takes a notebook for a terminal.
     shown = sys.stderr.isatty() if progress is None else progress
     about = f"tongues, about {search_seconds(model, lowest_speed, highest_speed):.0f} s" if shown else ""
-    with tqdm(desc=about, unit=" matrices", disable=not shown) as bar:
+    with tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar:
         curve = MultiplierCurve.of(model, lowest_speed, highest_speed, chosen, bar.update)
         if curve.error > threshold:
             raise ArithmeticError(
