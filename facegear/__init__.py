@@ -27,10 +27,12 @@ _PUBLIC = {
     "PhaseSplit": "phases",
     "phase_split": "phases",
     # models and maps
+    "WithoutRigidMotion": "models",
     "replace_parameter": "models",
     "stability_map": "maps",
     "Tongue": "tracing",
     "borders": "tracing",
+    "search_seconds": "tracing",
     "tongues": "tracing",
     # plate, inplane, transverse
     "Body": "plate",
@@ -43,8 +45,11 @@ _PUBLIC = {
     # periodic, floquet
     "ContactLoad": "periodic",
     "PeriodicSystem": "periodic",
+    "rigid_motions": "periodic",
+    "without_rigid_motion": "periodic",
     "error_estimate": "floquet",
     "growth_rate": "floquet",
+    "multiplier_errors": "floquet",
     "multipliers": "floquet",
     "transition_matrix": "floquet",
     # hsu

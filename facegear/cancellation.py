@@ -34,7 +34,15 @@ from scipy.optimize import brentq
 
 from facegear.collocation import gauss_rule
 from facegear.disk import coordinates
-from facegear.parameters import MeshLoad, finite_array, integer_at_least, nonnegative, positive, within
+from facegear.parameters import (
+    MeshLoad,
+    finite_array,
+    integer_at_least,
+    nonnegative,
+    positive,
+    whole_number,
+    within,
+)
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array, PiecewiseChebyshev
 from facegear.rotation import DiskWaves
@@ -111,14 +119,16 @@ def silent_angles(gear_teeth: int, wave_number: int, lowest: float, highest: flo
     TypeError, ValueError
         If an argument is not valid or the range is empty.
     """
-    teeth = integer_at_least("order", order, 1) * integer_at_least("gear_teeth", gear_teeth, 1) + wave_number
+    teeth = integer_at_least("order", order, 1) * integer_at_least("gear_teeth", gear_teeth, 1)
+    teeth += whole_number("wave_number", wave_number)
     low = nonnegative("lowest", lowest, "rad")
-    if positive("highest", highest, "rad") <= low:
+    high = positive("highest", highest, "rad")
+    if high <= low:
         raise ValueError(f"highest must be above lowest, {low!r} rad; got {highest!r} rad")
     if teeth == 0:
         return np.empty(0)
     step = math.pi / abs(teeth)
-    odd = np.arange(math.ceil((low / step - 1) / 2), math.floor((highest / step - 1) / 2) + 1)
+    odd = np.arange(math.ceil((low / step - 1) / 2), math.floor((high / step - 1) / 2) + 1)
     return np.asarray((2 * odd + 1) * step, dtype=float)
 
 

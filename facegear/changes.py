@@ -142,7 +142,7 @@ def effects_of_changes(
         ``width_after`` [rpm], ``growth_after`` [1/s] for ten percent in the better direction, NaN where that was not
         followed or the model allows no such value. Names in the coordinate ``change_name``.
     """
-    integer_at_least("followed", followed, 0)
+    followed = integer_at_least("followed", followed, 0)
     changes = possible_changes(model) if found else ()
     method = method_for(model, *speed_range)
     slopes = [_slopes(model, change, found, speed_range, method) for change in changes]

@@ -15,9 +15,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.parameters import finite, nonnegative, positive, within
+from facegear.parameters import finite, finite_array, nonnegative, positive, within
 from facegear.periodic import ContactLoad, PeriodicSystem
-from facegear.piecewise import Array, PiecewiseChebyshev
+from facegear.piecewise import SAME_INSTANT, Array, PiecewiseChebyshev
 
 
 @lru_cache(maxsize=1)
@@ -60,6 +60,10 @@ def tooth_pair_wave(contact_ratio: float, droop: float) -> PiecewiseChebyshev:
     """
     contact_ratio = within("contact_ratio", contact_ratio, 1.0, 5.0)
     droop = within("droop", droop, 0.0, 1.0)
+    # So close to a whole number a pair leaves as the next one enters.
+    nearest = round(contact_ratio)
+    if abs(contact_ratio - nearest) <= SAME_INSTANT:
+        contact_ratio = float(nearest)
     whole = int(np.floor(contact_ratio))
     rest = contact_ratio - whole
     breakpoints = [0.0] if rest == 0.0 else [0.0, rest]
@@ -201,7 +205,10 @@ def meissner_trace(
     array
         Of the broadcast shape [-].
     """
-    w, eps, d = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (frequency, depth, duty)))
+    given = {"frequency": frequency, "depth": depth, "duty": duty}
+    w, eps, d = np.broadcast_arrays(*(finite_array(name, values) for name, values in given.items()))
+    damping_ratio = finite("damping_ratio", damping_ratio)
+    natural_frequency = finite("natural_frequency", natural_frequency, "rad/s")
     period = 2.0 * np.pi / w
     # Complex, because the softer part has no frequency where ε + ζ² > 1.
     p, r = (natural_frequency * np.sqrt(1.0 + sign * eps - damping_ratio**2 + 0j) for sign in (1.0, -1.0))

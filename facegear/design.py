@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from facegear.geometry import Drive
-from facegear.lobes import CriticalThickness, ascending, highest_lobes
-from facegear.parameters import MeshLoad, positive, within
+from facegear.lobes import CriticalThickness, highest_lobes
+from facegear.parameters import MeshLoad, ascending, keep, positive, within
 from facegear.plate import THICKNESS_RATIO_RANGE, Body
 from facegear.tooth_design import root_stress
 from facegear.transverse import Transverse
@@ -102,10 +102,13 @@ class Requirements:
     speed_range: tuple[float, float]
 
     def __post_init__(self) -> None:
-        positive("power", self.power, "W")
-        positive("pinion_speed", self.pinion_speed, "rad/s")
-        within("safety_factor", self.safety_factor, 1.0, 100.0)
-        ascending("speed_range", self.speed_range, "rad/s")
+        keep(
+            self,
+            power=positive("power", self.power, "W"),
+            pinion_speed=positive("pinion_speed", self.pinion_speed, "rad/s"),
+            safety_factor=within("safety_factor", self.safety_factor, 1.0, 100.0),
+            speed_range=ascending("speed_range", self.speed_range, "rad/s"),
+        )
 
 
 @dataclass(frozen=True)

@@ -229,7 +229,7 @@ def thickness_figure(
         As :func:`facegear.transverse_arrays.growth_map` and :func:`facegear.transverse_arrays.tongue_sections`, and
         tips as from :func:`with_tips`.
     """
-    integer_at_least("cells", cells, 2)
+    cells = integer_at_least("cells", cells, 2)
     share = np.arange(1, cells + 1) / cells
     (slow, fast), (thin, thick) = speeds_rpm, thickness_range
     ratios = thin + (thick - thin) * share

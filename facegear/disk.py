@@ -74,7 +74,14 @@ def shape_vector(body: Body, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
     ValueError
         If a radius lies off the disk.
     """
-    return unit_shape(body.modes, np.divide(radius, body.outer_radius), angle) / body.outer_radius
+    # Written so that NaN fails too; the slack covers the rounding of r/a at the edges.
+    r, slack = finite_array("radius", radius, "m"), 1e-12 * body.outer_radius
+    if not np.all((r >= body.bore_radius - slack) & (r <= body.outer_radius + slack)):
+        raise ValueError(
+            f"radius must lie on the disk, from {body.bore_radius:.6g} to {body.outer_radius:.6g} m, got {radius!r}"
+        )
+    x = r / body.outer_radius
+    return unit_shape(body.modes, x, finite_array("angle", angle, "rad")) / body.outer_radius
 
 
 def unit_shape(
@@ -87,7 +94,8 @@ def unit_shape(
     modes : tuple of RadialModes
         `modes` of the body.
     x : array_like
-        r/a [-].
+        r/a [-]. A little beyond 1 the shapes are continued: R2 is measured along the pinion's axis, and a tooth
+        enters mesh beside it, some thousandths further out.
     angle : array_like
         θ [rad]; broadcast against `x`.
     by_radius : {0, 1, 2}
@@ -102,7 +110,7 @@ def unit_shape(
     x, angle = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(angle, dtype=float))
     parts = []
     for n, radial in enumerate(modes):
-        value = radial(x, by_radius) * float(n) ** by_angle
+        value = radial.continued(x, by_radius) * float(n) ** by_angle
         if n == 0:
             parts.append(value)
         else:

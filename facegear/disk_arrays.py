@@ -30,7 +30,7 @@ def plate_modes(body: Body, samples: int = 61) -> xr.Dataset:
         ``mode`` (circles, diameters, radius), R_mn times the outer radius [-]; ``frequency`` (circles, diameters)
         [Hz]; ``radius`` over the outer radius.
     """
-    integer_at_least("samples", samples, 2)
+    samples = integer_at_least("samples", samples, 2)
     x = np.linspace(body.bore_ratio, 1.0, samples)
     values = np.stack([modes(x) for modes in body.modes], axis=1)
     both = ("circles", "diameters")

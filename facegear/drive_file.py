@@ -10,13 +10,14 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from facegear.design import Requirements
 from facegear.drive_keys import LONGEST_TEXT, MOST_PINIONS, NAME, SECTIONS, WIDEST_SPEED_RATIO, Key
 from facegear.geometry import Drive
+from facegear.inplane import FASTEST_SPIN, fastest_speed
 from facegear.parameters import Material, MeshLoad, integer_at_least, rpm, within
 from facegear.plain_yaml import read_plain_yaml
 from facegear.plate import BORE_RATIO_RANGE, Body
@@ -28,8 +29,11 @@ T = TypeVar("T")
 # Factors by which people miss a unit, after that to SI.
 _FACTORS = (1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9)
 
+_INCH = 25.4e-3
 # Smallest angle between two pinions [rad].
 _CLOSEST = 1e-5
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*", re.ASCII)
+_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+([eE][-+]?\d+)?)\s*[^\d\s.,:eE-].*", re.ASCII)
 
 
 class DriveFileError(ValueError):
@@ -113,7 +117,11 @@ def parse_drive(content: bytes | str, source: str = "drive file") -> DriveFile:
         of its range, or impossible together with others.
     """
     try:
-        return _built(_checked(read_plain_yaml(content)))
+        found = _checked(read_plain_yaml(content))
+        try:
+            return _built(found)
+        except ValueError as error:
+            raise ValueError(f"{error}{_guess(found)}") from None
     except (TypeError, ValueError) as error:
         raise DriveFileError(f"{source}: {error}") from None
 
@@ -121,26 +129,71 @@ def parse_drive(content: bytes | str, source: str = "drive file") -> DriveFile:
 # --- from text to numbers in SI ---------------------------------------------------------------------------------
 
 
-def _checked(content: Any) -> dict[str, Any]:
-    """Values in SI, by section and SI name of the key; None for a gearbox that is not there."""
+@dataclass(frozen=True)
+class _Found:
+    """What a file holds, checked key by key.
+
+    Attributes
+    ----------
+    name : str
+        Name of the drive.
+    values : dict
+        Values in SI, by section and SI name of the key; None for a gearbox that is not there.
+    keys : dict
+        The keys that gave them, by section and SI name.
+    """
+
+    name: str
+    values: dict[str, Any]
+    keys: dict[str, dict[str, Key]]
+
+    def key(self, section: str, quantity: str) -> str:
+        """Dotted path of the key that gave a value."""
+        return f"{section}.{self.keys[section][quantity].name}"
+
+    def shown(self, section: str, quantity: str) -> str:
+        """Value of a quantity as the file has it, with its unit."""
+        key = self.keys[section][quantity]
+        return f"{key.from_si(self.values[section][quantity]):.6g} {key.unit}".rstrip()
+
+    def replaced(self, section: str, **values: Any) -> _Found:
+        """Return a copy with other values in one section."""
+        return replace(self, values={**self.values, section: {**self.values[section], **values}})
+
+
+def _checked(content: Any) -> _Found:
+    """Check every key by itself."""
     _check_keys("", content, [NAME.name, *SECTIONS])
-    found: dict[str, Any] = {NAME.name: _value(NAME.name, NAME, content.get(NAME.name))}
+    values: dict[str, Any] = {}
+    chosen: dict[str, dict[str, Key]] = {}
     for name, section in SECTIONS.items():
         keys = [key.name for key in section.keys]
         if name not in content:
             if section.required:
                 raise ValueError(f"{name} is missing: a section with the keys {', '.join(keys)}")
             if any(key.default is None for key in section.keys):
-                found[name] = None
+                values[name] = None
                 continue
         entries = content.get(name, {})
         _check_keys(name, entries, keys)
-        found[name] = {
+        chosen[name] = {same[0].si_name: _chosen(name, same, entries) for same in section.quantities()}
+        values[name] = {
             # A key without a value is a mistake, not the default.
-            key.si_name: _value(f"{name}.{key.name}", key, entries.get(key.name, key.default))
-            for key in section.keys
+            quantity: _value(f"{name}.{key.name}", key, entries.get(key.name, key.default))
+            for quantity, key in chosen[name].items()
         }
-    return found
+    return _Found(_value(NAME.name, NAME, content.get(NAME.name)), values, chosen)
+
+
+def _chosen(section: str, same: tuple[Key, ...], entries: Mapping[str, Any]) -> Key:
+    """Find the one key that a file uses of those that say the same."""
+    names = " or ".join(f"{section}.{key.name}" for key in same)
+    given = [key for key in same if key.name in entries]
+    if len(given) > 1:
+        raise ValueError(f"{names.replace(' or ', ' and ')} say the same: give one of them")
+    if not given and len(same) > 1:
+        raise ValueError(f"{names} is missing: {_plain(same[0].meaning)}; valid is {same[0].valid}")
+    return given[0] if given else same[0]
 
 
 def _check_keys(path: str, entries: Any, valid: Sequence[str]) -> None:
@@ -170,7 +223,7 @@ def _value(path: str, key: Key, value: Any) -> Any:
     if value is None:
         raise ValueError(f"{path} is missing: {_plain(key.meaning)}; valid is {key.valid}")
     if key.kind == "text":
-        if not isinstance(value, str) or not 1 <= len(value.strip()) <= LONGEST_TEXT:
+        if not isinstance(value, str) or not value.strip() or len(value) > LONGEST_TEXT:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
         return value.strip()
     if key.kind == "choice":
@@ -179,27 +232,44 @@ def _value(path: str, key: Key, value: Any) -> Any:
         return value
     if key.kind == "numbers":
         if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_PINIONS:
-            raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
-        return tuple(_number(f"{path}[{i}]", key, entry) / key.per_si for i, entry in enumerate(value))
+            raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
+        return tuple(key.to_si(_number(f"{path}[{i}]", key, entry)) for i, entry in enumerate(value))
     if key.kind == "integer":
         return int(within(path, integer_at_least(path, value, int(key.lowest)), key.lowest, key.highest))
-    return _number(path, key, value) / key.per_si
+    return key.to_si(_number(path, key, value))
 
 
 def _number(path: str, key: Key, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
+        raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
     if key.or_zero and value == 0:
         return 0.0
     return within(path, value, key.lowest, key.highest, key.unit, _unit_hint(path, key, value))
 
 
+def _text_hint(value: Any) -> str:
+    """Guess at what made a text of a number."""
+    if not isinstance(value, str):
+        return ""
+    if _DECIMAL_COMMA.fullmatch(value):
+        return f" (a point, not a comma: {value.strip().replace(',', '.')})"
+    if match := _WITH_UNIT.fullmatch(value):
+        return f" (the number alone, its unit is that of the key: {match[1]})"
+    return ""
+
+
 def _unit_hint(path: str, key: Key, value: float) -> str:
     """Guess at a wrong unit: the value that would be valid."""
-    for factor in (key.per_si, *_FACTORS) if key.unit else ():
+    hints = [f"a ratio, not {key.no_unit}?"] if key.no_unit and value > key.highest else []
+    factors = (key.to_si(1.0) ** -1, *_FACTORS) if key.unit else (1e-3,) if key.no_unit else ()
+    for factor in factors:
         if factor != 1.0 and key.lowest <= value * factor <= key.highest:
-            return f"wrong unit? {path}: {value * factor:.6g} would be valid, in {key.unit}"
-    return "0 is valid, too" if key.or_zero else ""
+            unit = f", in {key.unit}" if key.unit else ""
+            hints.append(f"wrong unit? {path}: {value * factor:.6g} would be valid{unit}")
+            break
+    if key.or_zero and not hints:
+        hints.append("0 is valid, too")
+    return "; ".join(hints)
 
 
 def _shown(value: Any) -> str:
@@ -218,22 +288,23 @@ def _plain(meaning: str) -> str:
 # --- from numbers to models ---------------------------------------------------------------------------------------
 
 
-def _built(found: dict[str, Any]) -> DriveFile:
-    drive = _by_model("gears", lambda: Drive(**found["gears"]))
-    material = _by_model("material", lambda: Material(**found["material"]))
-    _check_bore(drive, found["body"]["bore_radius"])
-    _check_angles(found["pinions"]["angles"])
-    body = _by_model("body", lambda: Body(drive, material=material, **found["body"]))
-    pinions = dict(found["pinions"])
+def _built(found: _Found) -> DriveFile:
+    values = found.values
+    drive = _by_model(found, "gears", lambda: Drive(**values["gears"]))
+    material = _by_model(found, "material", lambda: Material(**values["material"]))
+    _check_bore(drive, values["body"]["bore_radius"])
+    _check_angles(values["pinions"]["angles"])
+    body = _by_model(found, "body", lambda: Body(drive, material=material, **values["body"]))
+    pinions = dict(values["pinions"])
     angles, clock = pinions.pop("angles"), pinions.pop("contact_ratio")
     ratio = drive.geometric_contact_ratio if clock == "geometric" else None
-    load = _by_model("pinions", lambda: MeshLoad(**pinions))
-    transverse = _by_model("pinions", lambda: Transverse(body, load, angles, contact_ratio=ratio))
-    requirements = _requirements(found["operation"])
+    load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
+    transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact_ratio=ratio))
+    requirements = _requirements(found, body)
     torsional = None
-    if (gearbox := found["gearbox"]) is not None:
-        torsional = _by_model("gearbox", lambda: _torsional(drive, gearbox, ratio))
-    return DriveFile(found[NAME.name], transverse, requirements, torsional)
+    if (gearbox := values["gearbox"]) is not None:
+        torsional = _by_model(found, "gearbox", lambda: _torsional(drive, gearbox, ratio))
+    return DriveFile(found.name, transverse, requirements, torsional)
 
 
 def _torsional(drive: Drive, gearbox: dict[str, Any], contact_ratio: float | None) -> Torsional:
@@ -268,23 +339,61 @@ def _check_angles(angles: Sequence[float]) -> None:
                 )
 
 
-def _requirements(operation: dict[str, float]) -> Requirements:
-    low, high = operation["lowest_speed"], operation["highest_speed"]
+def _requirements(found: _Found, body: Body) -> Requirements:
+    operation = found.values["operation"]
+    low, high, limit = operation["lowest_speed"], operation["highest_speed"], fastest_speed(body)
     if not high / WIDEST_SPEED_RATIO <= low * (1 + 1e-12) or not low < high:
         raise ValueError(
             f"operation.lowest_speed_rpm must be lower than operation.highest_speed_rpm = {rpm(high):.6g} rpm and at "
             f"least 1/{WIDEST_SPEED_RATIO:g} of it, got {rpm(low):.6g} rpm"
         )
+    if high > limit:
+        raise ValueError(
+            f"operation.highest_speed_rpm must be at most {rpm(limit):.6g} rpm for this body, whose rim then moves "
+            f"{FASTEST_SPIN:g} times as fast as sound in its material, got {rpm(high):.6g} rpm"
+        )
     duty = (operation["power"], operation["pinion_speed"], operation["safety_factor"])
-    return _by_model("operation", lambda: Requirements(*duty, (low, high)))
+    return _by_model(found, "operation", lambda: Requirements(*duty, (low, high)))
 
 
-def _by_model(section: str, build: Callable[[], T]) -> T:
+def _by_model(found: _Found, section: str, build: Callable[[], T]) -> T:
     """Build a part; what it refuses is told under the names of the file."""
     try:
         return build()
     except (TypeError, ValueError, ArithmeticError) as error:
         text = str(error)
-        for key in SECTIONS[section].keys:
-            text = re.sub(rf"(?<![\w.]){key.si_name}(?!\w)", f"{section}.{key.name}", text)
+        for quantity in found.keys.get(section, {}):
+            text = re.sub(rf"(?<![\w.]){quantity}(?!\w)", found.key(section, quantity), text)
         raise ValueError(text if f"{section}." in text else f"{section}: {text}") from error
+
+
+# --- what may have happened ---------------------------------------------------------------------------------------
+
+
+def _guess(found: _Found) -> str:
+    """Say which frequent mistake turns values that do not go together into ones that do; empty if none does."""
+    gears, operation = found.values["gears"], found.values["operation"]
+    teeth = {"pinion_teeth": gears["gear_teeth"], "gear_teeth": gears["pinion_teeth"]}
+    speeds = {"lowest_speed": operation["highest_speed"], "highest_speed": operation["lowest_speed"]}
+    # What is 8 mm as a module is 25.4 mm/8 as a pitch, and the same the other way round.
+    module = 1e-3 * _INCH / gears["module"]
+    other = (
+        "a diametral pitch per inch"
+        if found.key("gears", "module") == "gears.module_mm"
+        else "a module in mm"
+    )
+    guesses = (
+        ("gears.pinion_teeth and gears.gear_teeth swapped?", found.replaced("gears", **teeth)),
+        (
+            "operation.lowest_speed_rpm and operation.highest_speed_rpm swapped?",
+            found.replaced("operation", **speeds),
+        ),
+        (f"is {found.shown('gears', 'module')} {other}?", found.replaced("gears", module=module)),
+    )
+    for words, changed in guesses:
+        try:
+            _built(changed)
+        except ValueError:
+            continue
+        return f" ({words})"
+    return ""

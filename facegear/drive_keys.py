@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
-from facegear.parameters import STEEL
+from facegear.parameters import STEEL, WATT_PER_HORSEPOWER
 from facegear.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
 
 Kind = Literal["integer", "number", "text", "choice", "numbers"]
@@ -23,9 +23,20 @@ LONGEST_TEXT = 80
 MOST_PINIONS = 12
 # Value in SI is value in the file divided by this.
 PER_SI: Mapping[str, float] = MappingProxyType(
-    {"mm": 1e3, "°": 180 / math.pi, "µs": 1e6, "rpm": 30 / math.pi, "kW": 1e-3, "GPa": 1e-9, "MPa": 1e-6}
+    {
+        "mm": 1e3,
+        "°": 180 / math.pi,
+        "µs": 1e6,
+        "rpm": 30 / math.pi,
+        "kW": 1e-3,
+        "hp": 1 / WATT_PER_HORSEPOWER,
+        "GPa": 1e-9,
+        "MPa": 1e-6,
+    }
 )
-_UNIT_IN_NAME = re.compile(r"_(mm|deg|us|rpm|kW|GPa|MPa|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
+# Value in SI is this divided by the value in the file.
+OVER_SI: Mapping[str, float] = MappingProxyType({"1/in": 25.4e-3})
+_UNIT_IN_NAME = re.compile(r"_(mm|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
 
 
 @dataclass(frozen=True)
@@ -50,6 +61,11 @@ class Key:
         Value if the key is left out; None for a key that must be there.
     choices : tuple of str
         Valid words of a "choice".
+    quantity : str
+        Name of the package's own parameter, where it is not that of the key without its unit. Keys of a section with
+        the same quantity say the same in different units: a file has exactly one of them.
+    no_unit : str
+        What a ratio without a unit is mistaken for.
     """
 
     name: str
@@ -61,16 +77,21 @@ class Key:
     or_zero: bool = False
     default: Any = None
     choices: tuple[str, ...] = ()
+    quantity: str = ""
+    no_unit: str = ""
 
     @property
     def si_name(self) -> str:
-        """Name without the unit, as the package's own parameters are called."""
-        return _UNIT_IN_NAME.sub("", self.name)
+        """Name of the package's own parameter."""
+        return self.quantity or _UNIT_IN_NAME.sub("", self.name)
 
-    @property
-    def per_si(self) -> float:
-        """Value in the file over value in SI."""
-        return PER_SI.get(self.unit, 1.0)
+    def to_si(self, value: float) -> float:
+        """Value in SI of a value in the file."""
+        return OVER_SI[self.unit] / value if self.unit in OVER_SI else value / PER_SI.get(self.unit, 1.0)
+
+    def from_si(self, value: float) -> float:
+        """Value in the file of a value in SI."""
+        return OVER_SI[self.unit] / value if self.unit in OVER_SI else value * PER_SI.get(self.unit, 1.0)
 
     @property
     def valid(self) -> str:
@@ -101,6 +122,11 @@ class Section:
     keys: tuple[Key, ...]
     required: bool = True
 
+    def quantities(self) -> Iterator[tuple[Key, ...]]:
+        """Keys that say the same in different units, together; most stand alone."""
+        for name in dict.fromkeys(key.si_name for key in self.keys):
+            yield tuple(key for key in self.keys if key.si_name == name)
+
 
 def _count(name: str, meaning: str, lowest: int, highest: int, default: int | None = None) -> Key:
     return Key(name, meaning, "integer", "", lowest, highest, default=default)
@@ -111,18 +137,27 @@ def _time(name: str, meaning: str, default: float | None = None) -> Key:
     return Key(name, meaning, "number", "µs", 1e-3, 1e4, or_zero=True, default=default)
 
 
-def _ratio(name: str, meaning: str) -> Key:
-    return Key(name, meaning, "number", "", 1e-6, 1e3, or_zero=True)
+def _ratio(name: str, meaning: str, no_unit: str) -> Key:
+    return Key(name, meaning, "number", "", 1e-6, 1e3, or_zero=True, no_unit=no_unit)
 
 
-NAME = Key("name", "name of the drive, for titles", "text")
+NAME = Key("name", "name of the drive, for titles: any characters, not all of them blank", "text")
 
 _GEARS = Section(
     "Teeth of the pinion, which is also the shaper's shape, and of the face gear.",
     (
         _count("pinion_teeth", "$N_1$, teeth of the pinion", 10, 300),
         _count("gear_teeth", "$N_2$, teeth of the face gear, more than the pinion's", 11, 3000),
-        Key("module_mm", "$m_d$, module", "number", "mm", 0.1, 100.0),
+        Key("module_mm", "$m_d$, module; not a diametral pitch", "number", "mm", 0.1, 100.0),
+        Key(
+            "diametral_pitch_per_inch",
+            "$P_d = 1/m_d$, teeth per inch of diameter; 8 is a module of 3.175 mm",
+            "number",
+            "1/in",
+            0.3,
+            200.0,
+            quantity="module",
+        ),
         Key("pressure_angle_deg", "$\\alpha_c$, pressure angle", "number", "°", 14.5, 30.0, default=25.0),
         Key("shaft_angle_deg", "$\\gamma$, angle between the axes", "number", "°", 60.0, 120.0, default=90.0),
     ),
@@ -130,7 +165,14 @@ _GEARS = Section(
 _BODY = Section(
     "Body of the face gear: a disk clamped at the bore, as large as the teeth reach.",
     (
-        Key("thickness_ratio", "$h/a$, thickness over outer radius", "number", "", *THICKNESS_RATIO_RANGE),
+        Key(
+            "thickness_ratio",
+            "$h/a$, thickness over outer radius",
+            "number",
+            "",
+            *THICKNESS_RATIO_RANGE,
+            no_unit="mm",
+        ),
         Key(
             "bore_radius_mm",
             "$b$, bore radius; also 0.05 to 0.9 of the outer radius, and inside the teeth",
@@ -177,9 +219,9 @@ _MATERIAL = Section(
 _PINIONS = Section(
     "Pinions and their bearings, all alike, as the body feels them.",
     (
-        _ratio("stiffness", "$\\mu$, bearing stiffness over that of the disk (4-17)"),
+        _ratio("stiffness", "$\\mu$, bearing stiffness over that of the disk (4-17)", "N/m"),
         _time("damping_us", "$\\zeta$, bearing damping over bearing stiffness (4-18)"),
-        _ratio("mass", "$\\tau$, pinion mass over that of a solid cylinder (4-19)"),
+        _ratio("mass", "$\\tau$, pinion mass over that of a solid cylinder (4-19)", "kg"),
         Key(
             "angles_deg",
             "$\\theta_c$ of each pinion, all different",
@@ -209,8 +251,16 @@ _OPERATION = Section(
             1.0,
             1e5,
         ),
-        Key("highest_speed_rpm", "highest speed of the face gear", "number", "rpm", 1.0, 1e5),
+        Key(
+            "highest_speed_rpm",
+            "highest speed of the face gear; its rim at most 0.2 times as fast as sound in its material",
+            "number",
+            "rpm",
+            1.0,
+            1e5,
+        ),
         Key("power_kW", "power of one pinion", "number", "kW", 1e-2, 1e5),
+        Key("power_hp", "power of one pinion (745.69987 W)", "number", "hp", 1e-2, 1e5),
         Key("pinion_speed_rpm", "speed of the pinion at that power", "number", "rpm", 1.0, 1e6),
         Key("safety_factor", "safety factor against yielding (4-22)", "number", "", 1.0, 100.0, default=1.5),
     ),
@@ -289,8 +339,14 @@ def _object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
 
 def _section_schema(section: Section) -> dict[str, Any]:
     properties = {key.name: _key_schema(key) for key in section.keys}
-    required = [key.name for key in section.keys if key.default is None]
-    return {"description": section.meaning, **_object(properties, required)}
+    required = [key.name for key, *others in section.quantities() if key.default is None and not others]
+    exactly_one = [
+        {"oneOf": [{"required": [key.name]} for key in keys]}
+        for keys in section.quantities()
+        if len(keys) > 1
+    ]
+    choices = {"allOf": exactly_one} if exactly_one else {}
+    return {"description": section.meaning, **_object(properties, required), **choices}
 
 
 def _key_schema(key: Key) -> dict[str, Any]:
@@ -299,7 +355,7 @@ def _key_schema(key: Key) -> dict[str, Any]:
     if key.default is not None:
         told["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
     if key.kind == "text":
-        return told | {"type": "string", "minLength": 1, "maxLength": LONGEST_TEXT}
+        return told | {"type": "string", "maxLength": LONGEST_TEXT, "pattern": r"\S"}
     if key.kind == "choice":
         return told | {"enum": list(key.choices)}
     ends = {"minimum": key.lowest, "maximum": key.highest}
@@ -318,16 +374,22 @@ def _key_schema(key: Key) -> dict[str, Any]:
 def documentation() -> str:
     """Tables of all keys, in Markdown."""
     head = "| key | meaning | unit | valid | if left out |\n| --- | --- | --- | --- | --- |"
-    parts = [f"{head}\n{_row(NAME)}"]
+    parts = [f"{head}\n{_row(NAME, [])}"]
     for name, section in SECTIONS.items():
         optional = "" if section.required else " (may be left out)"
-        rows = "\n".join(_row(key) for key in section.keys)
+        rows = "\n".join(
+            _row(key, [f"`{other.name}`" for other in keys if other is not key])
+            for keys in section.quantities()
+            for key in keys
+        )
         parts.append(f"### `{name}`{optional}\n\n{section.meaning}\n\n{head}\n{rows}")
     return "\n\n".join(parts)
 
 
-def _row(key: Key) -> str:
+def _row(key: Key, others: list[str]) -> str:
     default = "required" if key.default is None else _shown_default(key.default)
+    if others:
+        default = f"this or {' or '.join(others)}"
     valid = key.valid.replace(f" {key.unit}", "") if key.unit else key.valid
     return f"| `{key.name}` | {key.meaning} | {key.unit or '1' if key.kind != 'text' else ''} | {valid} | {default} |"
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from facegear.disk import unit_shape
-from facegear.inplane import FASTEST_SPIN, EdgeLoadStress, collocation_points, spin_per_speed
+from facegear.inplane import EdgeLoadStress, collocation_points, fastest_speed
 from facegear.lobatto import values_to_coefficients
 from facegear.parameters import FloatArray, nonnegative, one_of, positive, within
 from facegear.plate import Body, plate_quadrature
@@ -181,8 +181,8 @@ def unit_stiffness(
     -------
     ndarray, shape (n, n)
     """
-    limit = FASTEST_SPIN / spin_per_speed(body)
-    within("speed", speed, 0.0, limit, "rad/s", hint="rpm?")
+    limit = fastest_speed(body)
+    speed = within("speed", speed, 0.0, limit, "rad/s", hint="rpm?")
     octave = max(0, math.ceil(math.log2(speed / _LOWEST_TOP))) if speed > 0.0 else 0
     top = min(_LOWEST_TOP * 2**octave, limit)
     series = _stiffness_series(body, top, harmonics, following, angles)

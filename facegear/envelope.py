@@ -136,7 +136,8 @@ def critical_power(
     Returns
     -------
     float
-        [W]; infinite if the disk is stable up to 100 times the power at which a follower force makes a mode flutter.
+        [W]; infinite if the disk is stable up to 100 times the power at which a follower force makes a mode flutter,
+        and without nodal diameters, where the force does no work on the rim.
 
     Raises
     ------
@@ -149,6 +150,8 @@ def critical_power(
             "viscous_loss_factor of the body's material must be greater than 0: without damping any power flutters"
         )
     unit = float(mode_critical_powers(body, power_speed).min())
+    if unit == math.inf:
+        return math.inf
 
     def growth(share: float) -> float:
         return disk_growth_rate(
@@ -215,7 +218,7 @@ def largest_power(
     """
     if model.power_speed is None:
         raise ValueError("model must have a power and a power_speed, got None")
-    within("tolerance", tolerance, 1e-6, 0.1)
+    tolerance = within("tolerance", tolerance, 1e-6, 0.1)
     low, high = (
         positive("lowest_speed", lowest_speed, "rad/s"),
         positive("highest_speed", highest_speed, "rad/s"),
@@ -228,6 +231,8 @@ def largest_power(
     if found := tongues(at(0.0), low, high):
         worst = max(found, key=lambda tongue: tongue.growth_rate)
         return PowerLimit(0.0, worst.peak, worst.label)
+    if unit == math.inf:
+        return PowerLimit(math.inf, math.nan, "")
     stable, level = 0.0, 0.0
     for share in _LEVELS:
         stable, level = level, share * unit

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from facegear.cell import UNSTABLE, CellDetail, cell_detail
 from facegear.maps import stability_map
 from facegear.models import Model, replace_parameter
-from facegear.parameters import FloatArray, finite, integer_at_least, positive
+from facegear.parameters import FloatArray, finite, integer_at_least, keep, positive
 
 Settings = Mapping[str, Any]
 """Names of controls to their values."""
@@ -68,13 +68,18 @@ class Quantity:
     when: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for end in ("lowest", "highest", "value"):
+            keep(self, **{end: finite(f"{end} of {self.name}", getattr(self, end))})
         if not self.lowest < self.highest or not self.lowest <= self.value <= self.highest:
             raise ValueError(
                 f"value of {self.name} must lie between lowest={self.lowest!r} and highest={self.highest!r}, "
                 f"got {self.value!r}"
             )
-        positive(f"step of {self.name}", self.step)
-        positive(f"unit of {self.name}", self.unit)
+        keep(
+            self,
+            step=positive(f"step of {self.name}", self.step),
+            unit=positive(f"unit of {self.name}", self.unit),
+        )
 
     def matters(self, settings: Settings) -> bool:
         """Whether the number changes anything under these settings."""
@@ -152,8 +157,11 @@ class Study:
         if len(set(names)) < len(names):
             raise ValueError(f"controls must have names that differ, got {names}")
         self.swept(self.vertical)
-        integer_at_least("columns", self.columns, 2)
-        integer_at_least("rows", self.rows, 2)
+        keep(
+            self,
+            columns=integer_at_least("columns", self.columns, 2),
+            rows=integer_at_least("rows", self.rows, 2),
+        )
 
     @property
     def sweepable(self) -> tuple[Quantity, ...]:

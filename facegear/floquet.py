@@ -21,12 +21,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear import collocation
-from facegear.parameters import integer_at_least, within
+from facegear.parameters import integer_at_least, keep, within
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
 from facegear.stepping import Family, aligned_edges, gauss_magnus, midpoint
 
 ComplexArray = NDArray[np.complex128]
+# Changes of a transition matrix that show what rounding does to its eigenvalues.
+_CHANGES = 4
 
 
 class Method(Protocol):
@@ -38,6 +40,10 @@ class Method(Protocol):
 
     def refined(self) -> Method:
         """Return a method to judge this one by: clearly more accurate, and blind to other things."""
+        ...
+
+    def rounding(self, family: Family) -> float:
+        """Return how much rounding entries of Φ gather on the way, in units of the last place of the largest one."""
         ...
 
 
@@ -56,7 +62,7 @@ class Stepwise:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        integer_at_least("sub_intervals", self.sub_intervals, 1)
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`; refuses the velocity kicks of a contact mass with total rate."""
@@ -72,6 +78,10 @@ class Stepwise:
         """Aligned sub-intervals: halving equal ones can look converged where it is not (fraction 9/16)."""
         return AlignedStepwise(2 * self.sub_intervals)
 
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
+
 
 @dataclass(frozen=True)
 class AlignedStepwise:
@@ -86,7 +96,7 @@ class AlignedStepwise:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        integer_at_least("sub_intervals", self.sub_intervals, 1)
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
@@ -95,6 +105,10 @@ class AlignedStepwise:
     def refined(self) -> Method:
         """Twice as many sub-intervals."""
         return AlignedStepwise(2 * self.sub_intervals)
+
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
 
 
 @dataclass(frozen=True)
@@ -113,7 +127,7 @@ class Magnus:
     sub_intervals: int
 
     def __post_init__(self) -> None:
-        integer_at_least("sub_intervals", self.sub_intervals, 1)
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
@@ -123,6 +137,10 @@ class Magnus:
         """Twice as many sub-intervals."""
         return Magnus(2 * self.sub_intervals)
 
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
+
 
 @dataclass(frozen=True)
 class AdaptiveMagnus:
@@ -131,7 +149,9 @@ class AdaptiveMagnus:
     Parameters
     ----------
     tolerance : float
-        Largest error of an entry of Φ, in energy-like coordinates, relative to the largest entry or 1.
+        Largest error of an entry of Φ, in energy-like coordinates, relative to the largest entry or 1, rounding not
+        counted: it grows with the integral of ‖A‖ over the period, damping included, and :func:`error_estimate`
+        counts it. Strong dampers are for :class:`facegear.radau.Radau`.
 
     Raises
     ------
@@ -142,7 +162,7 @@ class AdaptiveMagnus:
     tolerance: float = 1e-10
 
     def __post_init__(self) -> None:
-        within("tolerance", self.tolerance, 1e-13, 1e-2)
+        keep(self, tolerance=within("tolerance", self.tolerance, 1e-13, 1e-2))
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
@@ -171,6 +191,10 @@ class AdaptiveMagnus:
         """Return the method with a hundredth of the tolerance."""
         return AdaptiveMagnus(max(self.tolerance / 100.0, 1e-13))
 
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
+
 
 @dataclass(frozen=True)
 class Collocation:
@@ -193,9 +217,12 @@ class Collocation:
     panel_angle: float = collocation.DEFAULT_PANEL_ANGLE
 
     def __post_init__(self) -> None:
-        integer_at_least("nodes", self.nodes, 2)
-        # Beyond 14 rad the kernel of a heavily damped mode loses its digits.
-        within("panel_angle", self.panel_angle, 0.1, 14.0)
+        keep(
+            self,
+            nodes=integer_at_least("nodes", self.nodes, 2),
+            # Beyond 14 rad the kernel of a heavily damped mode loses its digits.
+            panel_angle=within("panel_angle", self.panel_angle, 0.1, 14.0),
+        )
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`Method`."""
@@ -205,6 +232,10 @@ class Collocation:
     def refined(self) -> Method:
         """Half as many nodes again and shorter panels."""
         return Collocation(self.nodes + self.nodes // 2, 0.7 * self.panel_angle)
+
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: phases are known to the last place of the angle."""
+        return family.fastest_angle
 
 
 def default_method(system: PeriodicSystem) -> Method:
@@ -259,6 +290,9 @@ def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None
 def multipliers(system: PeriodicSystem, method: Method | None = None) -> ComplexArray:
     """Floquet multipliers, eigenvalues of the transition matrix (2-8), largest modulus first.
 
+    All have about the same absolute error, that of Φ. Of an overdamped motion in a long period no digit is left, and
+    what stands for its multiplier may be rounding: :func:`multiplier_errors` tells.
+
     Returns
     -------
     array of complex, shape (2n,)
@@ -269,7 +303,10 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
 
 
 def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
-    """Growth rate ln(max|α|)/T0 [1/s] (2-8); the system is unstable where it is positive."""
+    """Growth rate ln(max|α|)/T0 [1/s] (2-8); the system is unstable where it is positive.
+
+    Where all motions die within a period it is known no better than max|α|, whose error is relative to 1.
+    """
     radius = np.abs(multipliers(system, method)[0])
     return float(np.log(radius) / system.period)
 
@@ -291,26 +328,98 @@ def error_estimate(system: PeriodicSystem, method: Method) -> float:
     round. That distance bounds the difference of the two spectral radii, and unlike that difference it does not
     vanish because both lie on the unit circle. Near a tongue's border, where two multipliers meet, it grows as the
     true error does. The largest of two successive refinements counts: on a coarse mesh the error of a real
-    multiplier may change its sign between two of them.
+    multiplier may change its sign between two of them. Rounding, which may be common to all of them, is told by what
+    changes of Φ as large as its own do to the multiplier.
 
     Returns
     -------
     float
-        In the units of a multiplier [-]; at least the rounding error of Φ.
+        In the units of a multiplier [-].
     """
+    judged = _Judged.of(system, method)
+    values = judged.values
+
+    def apart(others: ComplexArray) -> float:
+        distance = np.abs(values[:, None] - others[None, :])
+        forth, back = distance[np.abs(values).argmax()].min(), distance[:, np.abs(others).argmax()].min()
+        return float(max(forth, back))
+
+    return max(map(apart, judged.finer)) + max(judged.rounding, *map(apart, judged.disturbed))
+
+
+def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> Array:
+    """Estimated error of each multiplier, found as :func:`error_estimate` finds that of the largest.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    method : Method, optional
+        :func:`default_method` if left out.
+
+    Returns
+    -------
+    array, shape (2n,)
+        In the order of :func:`multipliers` [-]. A multiplier that is smaller is zero to all digits that are known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> slow_and_fast = PeriodicSystem(np.eye(1), [[50.0]], np.eye(1), (), 100.0)
+    >>> np.abs(multipliers(slow_and_fast)) > multiplier_errors(slow_and_fast)
+    array([ True, False])
+    """
+    chosen = default_method(system) if method is None else method
+    judged = _Judged.of(system, chosen)
+    values = judged.values[np.argsort(-np.abs(judged.values), kind="stable")]
+
+    def apart(others: ComplexArray) -> Array:
+        return np.asarray(np.abs(values[:, None] - others[None, :]).min(axis=1), dtype=float)
+
+    rounding = np.maximum(judged.rounding, np.max([apart(x) for x in judged.disturbed], axis=0))
+    return np.asarray(np.max([apart(x) for x in judged.finer], axis=0) + rounding, dtype=float)
+
+
+def rounding_shift(system: PeriodicSystem, method: Method) -> float:
+    """Part of :func:`error_estimate` that is due to rounding: how far it moves a multiplier that may be the largest."""
     family = Family([system])
-    coarse = _eigenvalues(method.scaled_transition_matrices(family))[0]
-    estimate = 0.0
-    finer = method
-    for _ in range(2):
-        finer = finer.refined()
-        scaled = finer.scaled_transition_matrices(family)
-        fine = _eigenvalues(scaled)[0]
-        distance = np.abs(coarse[:, None] - fine[None, :])
-        forth, back = distance[np.abs(coarse).argmax()].min(), distance[:, np.abs(fine).argmax()].min()
-        rounding = 16.0 * np.finfo(float).eps * system.size * float(np.linalg.norm(scaled[0], 2))
-        estimate = max(estimate, float(forth) + rounding, float(back) + rounding)
-    return estimate
+    scaled = method.scaled_transition_matrices(family)[0]
+    rounding = rounding_error(scaled, family, method)
+    radii = np.abs(_eigenvalues(disturbed(scaled, rounding))).max(axis=-1)
+    return float(max(rounding, np.abs(radii - np.abs(_eigenvalues(scaled)).max()).max()))
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """Multipliers of a method, those of two refinements, and those of its Φ disturbed by as much as its rounding."""
+
+    values: ComplexArray
+    finer: list[ComplexArray]
+    disturbed: list[ComplexArray]
+    rounding: float
+
+    @classmethod
+    def of(cls, system: PeriodicSystem, method: Method) -> _Judged:
+        family = Family([system])
+        scaled = method.scaled_transition_matrices(family)[0]
+        finer, better = [], method
+        for _ in range(2):
+            better = better.refined()
+            finer.append(_eigenvalues(better.scaled_transition_matrices(family))[0])
+        rounding = rounding_error(scaled, family, method)
+        return cls(_eigenvalues(scaled), finer, list(_eigenvalues(disturbed(scaled, rounding))), rounding)
+
+
+def rounding_error(scaled: Array, family: Family, method: Method) -> float:
+    """Bound of the rounding in a scaled transition matrix (2n, 2n), as the norm of its error."""
+    places = 8.0 * scaled.shape[-1] + method.rounding(family)
+    return float(places * np.finfo(float).eps * max(1.0, np.linalg.norm(scaled, 2)))
+
+
+def disturbed(matrix: Array, size: float) -> Array:
+    """Return a matrix (d, d) with changes of a given norm, always the same ones, shape (4, d, d)."""
+    changes = np.random.default_rng(0).normal(size=(_CHANGES, *matrix.shape))
+    norms = np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True)
+    return np.asarray(matrix + size * changes / norms, dtype=float)
 
 
 def _eigenvalues(matrices: Array) -> ComplexArray:

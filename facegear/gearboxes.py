@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from facegear.geometry import Drive
-from facegear.parameters import STEEL, nonnegative, positive
+from facegear.parameters import STEEL, keep, nonnegative, positive
 from facegear.periodic import PeriodicSystem
 from facegear.torsional import Arm, Gearbox, Path, Torsional, cylinder_inertia, mesh_stiffness
 
@@ -83,12 +83,13 @@ class ProportionalGearbox:
     contact_ratio: float | None = None
 
     def __post_init__(self) -> None:
+        keep(self, correction_factor=positive("correction_factor", self.correction_factor))
         for name in ("gear_inertia", "load_inertia", "input_stiffness", "output_stiffness"):
-            positive(name, getattr(self, name))
+            keep(self, **{name: positive(name, getattr(self, name))})
         for name in ("mesh_damping", "input_damping", "output_damping"):
-            nonnegative(name, getattr(self, name), "s")
+            keep(self, **{name: nonnegative(name, getattr(self, name), "s")})
         # Everything else is checked by what it is turned into.
-        _ = self.torsional
+        keep(self, contact_ratio=self.torsional.box.contact_ratio)
 
     @property
     def mesh_contact_ratio(self) -> float:

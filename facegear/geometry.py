@@ -71,15 +71,21 @@ class Drive:
     shaft_angle: float = math.radians(90.0)
 
     def __post_init__(self) -> None:
-        parameters.integer_at_least("pinion_teeth", self.pinion_teeth, FEWEST_TEETH)
-        parameters.integer_at_least("gear_teeth", self.gear_teeth, FEWEST_TEETH + 1)
+        parameters.keep(
+            self,
+            pinion_teeth=parameters.integer_at_least("pinion_teeth", self.pinion_teeth, FEWEST_TEETH),
+            gear_teeth=parameters.integer_at_least("gear_teeth", self.gear_teeth, FEWEST_TEETH + 1),
+        )
         if self.gear_teeth <= self.pinion_teeth:
             raise ValueError(
                 f"gear_teeth must exceed pinion_teeth={self.pinion_teeth}, got {self.gear_teeth!r}"
             )
-        parameters.within("module", self.module, 1e-4, 0.1, "m")
-        parameters.angle_within("pressure_angle", self.pressure_angle, 14.5, 30.0)
-        parameters.angle_within("shaft_angle", self.shaft_angle, 60.0, 120.0)
+        parameters.keep(
+            self,
+            module=parameters.within("module", self.module, 1e-4, 0.1, "m"),
+            pressure_angle=parameters.angle_within("pressure_angle", self.pressure_angle, 14.5, 30.0),
+            shaft_angle=parameters.angle_within("shaft_angle", self.shaft_angle, 60.0, 120.0),
+        )
         if self._half_tooth_at_shaper_tip() <= 0.0:
             raise ValueError(
                 f"pinion_teeth={self.pinion_teeth} is too few: at a pressure angle of "

@@ -32,7 +32,8 @@ from facegear.averaging import (
     signature,
     unstable_intervals,
 )
-from facegear.modal import ModalExpansion, check_order, modal_expansion
+from facegear.modal import ModalExpansion, modal_expansion
+from facegear.parameters import ascending, integer_at_least, nonnegative
 from facegear.periodic import PeriodicSystem
 
 Array = NDArray[np.float64]
@@ -252,15 +253,10 @@ def band_speeds(
         If the range is empty or not positive, the number of oscillating modes changes inside it, or the mean
         system is unstable at a crossing.
     """
-    check_order(order)
-    _check_reach(reach)
-    low, high = speeds
-    if not (math.isfinite(low) and math.isfinite(high) and 0 < low < high):
-        raise ValueError(f"speeds = {speeds!r}: valid is a positive lowest speed below a finite highest one")
-    if isinstance(points, bool) or points != int(points) or points < 2:
-        raise ValueError(f"points = {points!r}: valid is a whole number, at least 2")
-
-    grid = np.linspace(low, high, int(points))
+    order = integer_at_least("order", order, 1)
+    reach = nonnegative("reach", reach)
+    low, high = ascending("speeds", speeds, "rad/s")
+    grid = np.linspace(low, high, integer_at_least("points", points, 2))
     sampled = [expand(system_at(float(speed)), 1) for speed in grid]
     sizes = {len(mean.frequencies) for mean in sampled}
     if len(sizes) > 1:
@@ -376,8 +372,8 @@ def _bands_near(
 
 
 def _expanded(system: PeriodicSystem | ModalExpansion, order: int, reach: float) -> ModalExpansion:
-    check_order(order)
-    _check_reach(reach)
+    order = integer_at_least("order", order, 1)
+    reach = nonnegative("reach", reach)
     if isinstance(system, PeriodicSystem):
         return modal_expansion(system, order)
     if not isinstance(system, ModalExpansion):
@@ -385,11 +381,6 @@ def _expanded(system: PeriodicSystem | ModalExpansion, order: int, reach: float)
     if order > system.order:
         raise ValueError(f"order = {order}: the expansion holds orders 1 to {system.order}")
     return system
-
-
-def _check_reach(reach: float) -> None:
-    if not (math.isfinite(reach) and reach >= 0):
-        raise ValueError(f"reach = {reach!r}: valid is a finite number, at least 0")
 
 
 def _refuse_unstable_mean(expansion: ModalExpansion) -> None:

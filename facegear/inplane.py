@@ -25,7 +25,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from facegear.lobatto import lobatto_points, values_to_coefficients
-from facegear.parameters import FloatArray, finite_array, integer_at_least, one_of, within
+from facegear.parameters import FloatArray, finite_array, integer_within, keep, one_of, within
 from facegear.plate import Body
 
 Direction = Literal["tangential", "radial"]
@@ -123,10 +123,10 @@ def harmonic_field(bore_ratio: float, poissons_ratio: float, spin: float, harmon
     TypeError, ValueError
         If an argument is of the wrong kind or outside its range.
     """
-    within("bore_ratio", bore_ratio, 0.01, 0.99)
-    within("poissons_ratio", poissons_ratio, 0.0, 0.5)
-    within("spin", spin, 0.0, FASTEST_SPIN)
-    k, nu = _checked_harmonic(harmonic, HIGHEST_HARMONIC), poissons_ratio
+    bore_ratio = within("bore_ratio", bore_ratio, 0.01, 0.99)
+    poissons_ratio = within("poissons_ratio", poissons_ratio, 0.0, 0.5)
+    spin = within("spin", spin, 0.0, FASTEST_SPIN)
+    k, nu = integer_within("harmonic", harmonic, 0, HIGHEST_HARMONIC), poissons_ratio
     degree = _degree(bore_ratio, k)
     t, derivative = collocation_points(degree)
     half = -math.log(bore_ratio) / 2
@@ -155,13 +155,6 @@ def harmonic_field(bore_ratio: float, poissons_ratio: float, spin: float, harmon
     coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
     coefficients.setflags(write=False)
     return HarmonicField(bore_ratio, poissons_ratio, k, coefficients)
-
-
-def _checked_harmonic(harmonic: int, highest: int) -> int:
-    number = integer_at_least("harmonic", harmonic, 0)
-    if number > highest:
-        raise ValueError(f"harmonic must be an integer from 0 to {highest}, got {harmonic!r}")
-    return number
 
 
 @dataclass(frozen=True)
@@ -210,14 +203,14 @@ class EdgeLoadStress:
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
             raise TypeError(f"body must be a Body, got {self.body!r}")
-        within("force", self.force, -_MOST_FORCE, _MOST_FORCE, "N")
-        within("speed", self.speed, 0.0, FASTEST_SPIN / spin_per_speed(self.body), "rad/s", hint="rpm?")
-        if integer_at_least("harmonics", self.harmonics, 0) > HIGHEST_HARMONIC:
-            raise ValueError(
-                f"harmonics must be an integer from 0 to {HIGHEST_HARMONIC}, got {self.harmonics!r}"
-            )
         one_of("direction", self.direction, ("tangential", "radial"))
-        within("angle", self.angle, -2 * math.pi, 2 * math.pi, "rad", hint="degrees?")
+        keep(
+            self,
+            force=within("force", self.force, -_MOST_FORCE, _MOST_FORCE, "N"),
+            speed=within("speed", self.speed, 0.0, fastest_speed(self.body), "rad/s", hint="rpm?"),
+            harmonics=integer_within("harmonics", self.harmonics, 0, HIGHEST_HARMONIC),
+            angle=within("angle", self.angle, -2 * math.pi, 2 * math.pi, "rad", hint="degrees?"),
+        )
 
     def harmonic(self, k: int) -> HarmonicField:
         """Return the field of harmonic k for unit stress at the rim, on unit outer radius."""
@@ -228,7 +221,7 @@ class EdgeLoadStress:
     def edge_stress(self, k: int) -> float:
         """Amplitude τ_k of the load's stress at the rim in harmonic k [Pa] (6-7): F/(2πah), twice that for k > 0."""
         mean = self.force / (2 * math.pi * self.body.outer_radius * self.body.thickness)
-        return mean if _checked_harmonic(k, HIGHEST_HARMONIC) == 0 else 2 * mean
+        return mean if integer_within("harmonic", k, 0, HIGHEST_HARMONIC) == 0 else 2 * mean
 
     def _amplitudes(self, k: int, r: ArrayLike) -> FloatArray:
         """S, T, H [Pa] at radii r [m], shape (3, ...)."""
@@ -305,3 +298,9 @@ class EdgeLoadStress:
 def spin_per_speed(body: Body) -> float:
     """Ω*/Ω2 = a √(ρ/E) [s] (6-1)."""
     return body.outer_radius * math.sqrt(body.material.density / body.material.youngs_modulus)
+
+
+def fastest_speed(body: Body) -> float:
+    """Speed Ω2 up to which the plane field of a rotating disk is computed, Ω* = `FASTEST_SPIN` [rad/s]."""
+    # Less the rounding of the product that leads back to Ω*.
+    return FASTEST_SPIN * (1.0 - 1e-12) / spin_per_speed(body)

@@ -95,7 +95,9 @@ def checked_contact_ratio(drive: Drive, contact_ratio: float | None) -> float:
     ----------
     drive : Drive
     contact_ratio : float or None
-        Mesh periods that a tooth pair stays in mesh, 1 or more; None for Tregold's, `drive.contact_ratio`.
+        Mesh periods that a tooth pair stays in mesh, 1 or more; None for Tregold's, `drive.contact_ratio`. Within
+        1e-9 of a whole number it counts as that: a pair then leaves as the next one enters, and the piece between
+        would be too short to be told from rounding.
 
     Raises
     ------
@@ -104,7 +106,8 @@ def checked_contact_ratio(drive: Drive, contact_ratio: float | None) -> float:
     """
     ratio = drive.contact_ratio if contact_ratio is None else contact_ratio
     hint = "below 1 there are instants without any tooth in mesh"
-    return parameters.within("contact_ratio", ratio, 1.0, float(drive.pinion_teeth), hint=hint)
+    ratio = parameters.within("contact_ratio", ratio, 1.0, float(drive.pinion_teeth), hint=hint)
+    return float(round(ratio)) if abs(ratio - round(ratio)) < _SHORTEST else ratio
 
 
 def _merged(instants: list[float]) -> tuple[float, ...]:
@@ -147,7 +150,7 @@ class _TimedPairs(ABC, Generic[States]):
     contact_ratio: float = field(default=None)  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "contact_ratio", checked_contact_ratio(self.drive, self.contact_ratio))
+        parameters.keep(self, contact_ratio=checked_contact_ratio(self.drive, self.contact_ratio))
 
     @property
     def pairs(self) -> int:
@@ -294,14 +297,35 @@ class ContactPath(_TimedPairs[PairStates]):
             f"the contact point's speed has no limit; {enough} pinion teeth are enough at any gear ratio"
         )
 
+    def require_slow_centroid(self, name: str) -> None:
+        """Refuse a centroid that springs from the exit of one pair to the entry of the next, for what follows it.
+
+        Parameters
+        ----------
+        name : str
+            What has to follow it, for the message.
+
+        Raises
+        ------
+        ValueError
+            If `contact_ratio` is below 1.001: one pair leaves as the next enters, and what is left of (cr − 1) T0
+            for the way back over the whole face width lets speed, and the work of a damper, grow without limit.
+        """
+        if self.contact_ratio < 1.0 + _SHORT:
+            raise ValueError(
+                f"contact_ratio must be at least {1.0 + _SHORT:g} for {name}, which follows the contact centroid back "
+                f"from exit to entry within contact_ratio - 1 mesh periods, got {self.contact_ratio!r}"
+            )
+
     @property
     def fit_tolerances(self) -> FloatArray:
         """Relative errors that a fit of the positions may have, shape (pieces,) [-].
 
-        On the short pieces next to a square root (`breakpoints`) an error counts by their duration.
+        On the short pieces next to a square root (`breakpoints`), and while the only pair leaves and the next one
+        enters, an error counts by their duration.
         """
         widths = np.diff(self.breakpoints, append=1.0)
-        if self.breakpoints == self._corners:
+        if self.breakpoints == self._corners and self.contact_ratio >= 1.0 + _SHORT:
             return np.full(widths.shape, _TOLERANCE)
         return np.asarray(_TOLERANCE * np.maximum(1.0, _SHORT / widths))
 

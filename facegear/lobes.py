@@ -9,16 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet import Method, growth_rate
 from facegear.labels import combination
 from facegear.models import Model
 from facegear.multiplier_curves import method_for
-from facegear.parameters import finite_array, positive, within
+from facegear.parameters import ascending, finite_array, within
 from facegear.tracing import Tongue, tongues
 
 # Thicknesses at which all tongues are looked for, each so many times the one above.
@@ -117,7 +115,7 @@ def highest_lobes(
     if wanted.ndim != 1 or wanted.size == 0:
         raise ValueError(f"highest_speeds must list at least one speed in rad/s, got {highest_speeds!r}")
     for highest in wanted.tolist():
-        ascending("speed_range", (lowest_speed, highest), "rad/s")
+        lowest_speed, _ = ascending("speed_range", (lowest_speed, highest), "rad/s")
     thinnest, thickest = ascending("thickness_range", thickness_range)
     tolerance = within("tolerance", tolerance, 1e-7, 1e-3)
     traced: list[Lobe] = []
@@ -135,23 +133,6 @@ def highest_lobes(
         results[highest] = CriticalThickness(inside)
         traced, stable = list(inside), inside[0].thickness_ratio + tolerance
     return tuple(results[highest] for highest in wanted.tolist())
-
-
-def ascending(name: str, values: Any, unit: str = "") -> tuple[float, float]:
-    """Check that a range is two positive, ascending numbers, and return them.
-
-    Raises
-    ------
-    TypeError, ValueError
-        Naming what is wrong.
-    """
-    listed = isinstance(values, list | tuple) or (isinstance(values, np.ndarray) and values.ndim == 1)
-    if not listed or len(values) != 2:
-        raise ValueError(f"{name} must be two numbers, lowest and highest, got {values!r}")
-    low, high = (positive(name, value, unit) for value in values)
-    if low >= high:
-        raise ValueError(f"{name} must ascend, got {values!r}")
-    return low, high
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,7 @@ from facegear.floquet import (
     Method,
     default_method,
     multipliers,
+    rounding_shift,
     transition_matrices,
 )
 from facegear.models import Model, is_whole_number, parameter_path, replace_at
@@ -88,8 +89,8 @@ def stability_map(
     -------
     xarray.DataArray, shape (V, S)
         ln(max|α|)/T0 [1/s] (2-8), unstable where positive; dimensions named after the parameter and "speed".
-        Attribute ``error_estimate`` is the largest difference of max|α| from a more accurate method in the corner
-        cells and the middle one.
+        Attribute ``error_estimate`` is the largest difference of max|α| from a more accurate method, and what
+        rounding does to it, in the corner cells and the middle one.
 
     Raises
     ------
@@ -372,12 +373,13 @@ def _spectral_radius(system: PeriodicSystem, method: Method | None) -> float:
 
 
 def _error_estimate(sweep: _Sweep, speeds: Array, radii: Array) -> float:
-    """Largest difference of max|α| from a more accurate method, corner cells and middle cell."""
+    """Largest difference of max|α| from a more accurate method, and rounding, corner cells and middle cell."""
     last_value, last_speed = radii.shape[0] - 1, radii.shape[1] - 1
     cells = {(v, s) for v in (0, last_value) for s in (0, last_speed)} | {(last_value // 2, last_speed // 2)}
     worst = 0.0
     for v, s in sorted(cells):
         system = sweep.models[v].system(float(speeds[s]))
-        judge = (sweep.method or default_method(system)).refined()
-        worst = max(worst, abs(_spectral_radius(system, judge) - float(radii[v, s])))
+        method = sweep.method or default_method(system)
+        difference = abs(_spectral_radius(system, method.refined()) - float(radii[v, s]))
+        worst = max(worst, difference + rounding_shift(system, method))
     return worst

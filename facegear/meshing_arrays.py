@@ -52,7 +52,7 @@ def tooth_and_contact_lines(drive: Drive, lines: int = 13, points: int = 33) -> 
         ``surface`` (flank, along, across, axis), ``line`` (fraction, point, axis), ``midpoint`` (fraction, axis) [m],
         ``length`` (fraction) [m], ``contact_radius`` (fraction) [m], ``contact_angle`` (fraction) [rad].
     """
-    integer_at_least("lines", lines, 3)
+    lines = integer_at_least("lines", lines, 3)
     fraction = np.linspace(0.0, 1.0, lines)
     rotation = drive.entry_rotation * (1.0 - fraction) + drive.exit_rotation * fraction
     contact = drive.contact_lines(rotation)

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from facegear.parameters import integer_at_least
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import FourierSeries
 
@@ -123,7 +124,7 @@ class StandardForm:
             raise ValueError(f"kind = {kind!r}: valid are 'sum' and 'difference'")
         if not 1 <= k <= j <= size or (kind == "difference" and k == j):
             raise ValueError(f"k = {k}, j = {j}: valid are 1 ≤ k ≤ j ≤ {size}, and k < j for a difference")
-        check_order(order)
+        order = integer_at_least("order", order, 1)
         if order > len(self.D):
             raise ValueError(f"order = {order}: the expansion holds orders 1 to {len(self.D)}")
         k, j, s = k - 1, j - 1, order - 1
@@ -174,7 +175,7 @@ def standard_form(system: PeriodicSystem, order: int) -> StandardForm:
     The mean damping F(0) is of first order here. Its entries off the diagonal, gyroscopic terms included, have
     no effect on a pair of distinct natural frequencies; where they are not small use :func:`modal_expansion`.
     """
-    check_order(order)
+    order = integer_at_least("order", order, 1)
     mass, damping, stiffness = system.fourier(order)
     scale = np.abs(mass.mean).max()
     if max(np.abs(mass.cosine).max(), np.abs(mass.sine).max()) > _ROUNDING * scale:
@@ -236,7 +237,7 @@ def modal_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
     A motion v_b exp(λ_b t) of the mean system meets the harmonic (λ_b² M_s + λ_b C_s + K_s) v_b exp(isωt);
     its projection on the left eigenvector of λ_a is Â_{s,ab}. A varying mass needs no inverse of M(t).
     """
-    check_order(order)
+    order = integer_at_least("order", order, 1)
     mass, damping, stiffness = system.fourier(order)
     # Real modal coordinates of the symmetric mean, scaled by frequency, make the state matrix nearly normal.
     squares, modes = eigh((stiffness.mean + stiffness.mean.T) / 2, mass.mean)
@@ -294,11 +295,3 @@ def _harmonics(series: FourierSeries) -> ComplexArray:
     """Complex coefficients of exp(isωt), s = −order … order; the mean is left out."""
     positive = (series.cosine - 1j * series.sine) / 2
     return np.concatenate([positive[::-1].conj(), np.zeros((1, *positive.shape[1:])), positive])
-
-
-def check_order(order: int) -> None:
-    """Refuse an order of the harmonics that is not a whole number from 1."""
-    if isinstance(order, bool) or not isinstance(order, (int, np.integer)):
-        raise TypeError(f"order = {order!r}: valid is a whole number, at least 1")
-    if order < 1:
-        raise ValueError(f"order = {order}: valid is a whole number, at least 1")

@@ -8,11 +8,12 @@ of its body.
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
 from functools import cache
 from numbers import Real
 from typing import Any, Protocol, TypeVar, get_args, get_type_hints
 
-from facegear.periodic import PeriodicSystem
+from facegear.periodic import PeriodicSystem, without_rigid_motion
 
 
 class Model(Protocol):
@@ -24,6 +25,23 @@ class Model(Protocol):
 
 
 ModelT = TypeVar("ModelT", bound=Model)
+
+
+@dataclass(frozen=True)
+class WithoutRigidMotion:
+    """A model whose rigid-body motions are taken out at each speed (:func:`facegear.periodic.without_rigid_motion`).
+
+    Parameters
+    ----------
+    model : Model
+        Such as a train of gears on shafts that hang on nothing.
+    """
+
+    model: Model
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of what is left, at a constant speed [rad/s]."""
+        return without_rigid_motion(self.model.system(speed))
 
 
 def parameter_names(model: object) -> tuple[str, ...]:

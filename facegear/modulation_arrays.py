@@ -16,7 +16,7 @@ from facegear.hsu import resonance_bands
 from facegear.labels import Combination
 from facegear.modal import standard_form
 from facegear.models import Model, value_of
-from facegear.parameters import FloatArray, integer_at_least, nonnegative, positive, rad_per_s, rpm
+from facegear.parameters import FloatArray, integer_at_least, keep, nonnegative, positive, rad_per_s, rpm
 from facegear.periodic import PeriodicSystem
 from facegear.radau import Radau
 from facegear.reference import text, variable
@@ -51,7 +51,7 @@ class ScaledModulation:
     depth: float
 
     def __post_init__(self) -> None:
-        nonnegative("depth", self.depth)
+        keep(self, depth=nonnegative("depth", self.depth))
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a speed [rad/s]: C̄ + ε (C(t) − C̄), K̄ + ε (K(t) − K̄).

@@ -16,7 +16,14 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from facegear.collocation import UnsuitableSystemError, is_suitable
-from facegear.floquet import AdaptiveMagnus, Collocation, Method, transition_matrices
+from facegear.floquet import (
+    AdaptiveMagnus,
+    Collocation,
+    Method,
+    disturbed,
+    rounding_error,
+    transition_matrices,
+)
 from facegear.lobatto import interleaved, lobatto_points, values_to_coefficients
 from facegear.models import Model
 from facegear.periodic import PeriodicSystem
@@ -38,6 +45,8 @@ _MOST_CUTS = 12
 _DEAD = 30.0
 # Slowness of systems computed together differs by this factor at most: they share panels or sub-intervals.
 _TOGETHER = 1.4
+# Matrices of which eigenvalues are found at once, and the sum of the third powers of their sizes.
+_MOST_AT_ONCE, _CUBES_AT_ONCE = 512, 100_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +92,8 @@ class FrozenMotions:
         """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range."""
         slowness, angle = self.live_angle
         density = angle / step + fewest * (slowness - self.low) / (self.high - self.low)
-        places = np.linspace(0.0, density[-1], int(np.ceil(density[-1])) + 1)
+        # Where nothing oscillates there are the two ends.
+        places = np.linspace(0.0, density[-1], max(int(np.ceil(density[-1])), 1) + 1)
         points = np.interp(places, density, slowness)
         points[[0, -1]] = self.low, self.high
         return np.asarray(points, dtype=float)
@@ -129,6 +139,10 @@ class _Window:
         return np.tensordot(basis, coefficients, axes=1)
 
 
+def _unheard(count: int) -> None:
+    """Do nothing with a number of matrices."""
+
+
 @dataclass(frozen=True, eq=False)
 class MultiplierCurve:
     """Floquet multipliers of a model against speed, from interpolated transition matrices.
@@ -144,6 +158,8 @@ class MultiplierCurve:
         How fast the model moves and what dies within a period.
     windows : tuple
         Series on parts of the range.
+    looked_at : callable
+        Told the number of matrices whenever some are interpolated, for a progress bar.
     """
 
     model: Model
@@ -152,12 +168,20 @@ class MultiplierCurve:
     highest_speed: float
     motions: FrozenMotions
     windows: tuple[_Window, ...]
+    looked_at: Callable[[int], object] = _unheard
 
     @classmethod
     def of(
-        cls, model: Model, lowest_speed: float, highest_speed: float, method: Method | None = None
+        cls,
+        model: Model,
+        lowest_speed: float,
+        highest_speed: float,
+        method: Method | None = None,
+        looked_at: Callable[[int], object] = _unheard,
     ) -> MultiplierCurve:
         """Interpolate the transition matrices of a model between two speeds [rad/s].
+
+        `looked_at` is told the number of matrices whenever some have been computed or interpolated.
 
         Raises
         ------
@@ -173,15 +197,19 @@ class MultiplierCurve:
             for part in _neighbours(slowness):
                 systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
                 found[part] = _family_matrices(systems, chosen)
+                looked_at(len(systems))
             return np.asarray(scale @ found @ inverse, dtype=float)
 
         motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
+        # No series resolves rounding, which is largest in the longest period.
+        rounding = rounding_error(np.eye(len(scale)), Family([model.system(lowest_speed)]), chosen)
+        tolerance = max(_TOLERANCE, 4.0 * rounding)
         windows = [
             window
             for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
-            for window in _windows(matrices, motions, low, high, _MOST_CUTS)
+            for window in _windows(matrices, motions, low, high, tolerance, _MOST_CUTS)
         ]
-        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows))
+        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
 
     @cached_property
     def error(self) -> float:
@@ -200,6 +228,7 @@ class MultiplierCurve:
 
     def _by_window(self, speeds: Array, evaluate: Callable[[_Window, Array], Array]) -> Array:
         slowness = 1.0 / np.asarray(speeds, dtype=float)
+        self.looked_at(slowness.size)
         if len(self.windows) == 1:
             return evaluate(self.windows[0], slowness)
         found = np.empty((slowness.size, *self.windows[0].coefficients.shape[1:]))
@@ -212,8 +241,16 @@ class MultiplierCurve:
 
     def spectral_radii(self, speeds: Array) -> Array:
         """max|α| at speeds (m,)."""
-        matrices = self.transition_matrices(np.atleast_1d(speeds))
-        return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
+        speeds = np.atleast_1d(speeds)
+        parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
+        eigenvalues = [np.linalg.eigvals(self.transition_matrices(part)) for part in parts]
+        return np.asarray(np.abs(np.concatenate(eigenvalues)).max(axis=-1), dtype=float)
+
+    @property
+    def batch(self) -> int:
+        """Matrices worked on at once: what takes a second or so, for no interruption is heard meanwhile."""
+        size = self.windows[0].coefficients.shape[-1]
+        return int(max(1, min(_MOST_AT_ONCE, _CUBES_AT_ONCE // size**3)))
 
 
 def method_for(model: Model, lowest_speed: float, highest_speed: float) -> Method:
@@ -242,7 +279,12 @@ def _neighbours(slowness: Array) -> list[NDArray[np.intp]]:
 
 
 def _windows(
-    evaluate: Callable[[Array], Array], motions: FrozenMotions, low: float, high: float, cuts: int
+    evaluate: Callable[[Array], Array],
+    motions: FrozenMotions,
+    low: float,
+    high: float,
+    tolerance: float,
+    cuts: int,
 ) -> list[_Window]:
     """Series on one window, or on halves of it where its degree does not suffice."""
     middle, half = (low + high) / 2.0, (high - low) / 2.0
@@ -253,7 +295,7 @@ def _windows(
             values = interleaved(values, evaluate(middle + half * lobatto_points(degree)[1::2]))
         coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
         tail = np.abs(coefficients[-2:]).max()
-        if tail <= _TOLERANCE * max(1.0, float(np.abs(values).max())):
+        if tail <= tolerance * max(1.0, float(np.abs(values).max())):
             return [_Window(low, high, coefficients)]
         degree *= 2
     if cuts == 0:
@@ -262,12 +304,18 @@ def _windows(
             f"the last Chebyshev coefficient is {tail:.2g}"
         )
     halves = ((low, middle), (middle, high))
-    return [window for part in halves for window in _windows(evaluate, motions, *part, cuts - 1)]
+    return [window for part in halves for window in _windows(evaluate, motions, *part, tolerance, cuts - 1)]
 
 
 def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:
-    """Largest distance of a multiplier of the curve to the nearest of a refined method, those inside 1/2 left out."""
-    coarse = np.linalg.eigvals(curve.transition_matrices(np.array([speed]))[0])
-    fine = np.linalg.eigvals(transition_matrices([system], method.refined())[0])
-    distance = np.abs(coarse[:, None] - fine[None, :]).min(axis=1)
-    return float(distance[np.abs(coarse) > 0.5].max(initial=0.0))
+    """Error of a multiplier of the curve, those inside 1/2 left out: distance to a refined method's, and rounding."""
+    matrix = curve.transition_matrices(np.array([speed]))[0]
+    coarse = np.linalg.eigvals(matrix)
+    fine = np.linalg.eigvals(transition_matrices([system], method.refined()))
+    rounding = rounding_error(matrix, Family([system]), method)
+    moved = np.linalg.eigvals(disturbed(matrix, rounding))
+    distance, shift = (
+        np.abs(coarse[:, None] - others[:, None, :]).min(axis=2).max(axis=0) for others in (fine, moved)
+    )
+    errors = distance + np.maximum(shift, rounding)
+    return float(errors[np.abs(coarse) > 0.5].max(initial=0.0))

@@ -1,7 +1,9 @@
 """Checked inputs: what every quantity may be, units at the edges, material and mesh load.
 
 Inside the package everything is in SI units and radians. Every public entry checks what it is given with the
-functions below, so that one wrong number ends in one sentence that names the parameter.
+functions below, so that one wrong number ends in one sentence that names the parameter. What they return is a
+Python float or int, or an array of float64, and that is what is kept: a NumPy number brings a width of its own, in
+which ``np.int8(70) - 1`` still fits and ``np.int8(70) + 70`` does not. A boolean is no number.
 """
 
 import math
@@ -18,8 +20,31 @@ FloatArray = NDArray[np.float64]
 WATT_PER_HORSEPOWER = 745.69987
 
 
+def _plain(value: Any) -> Any:
+    """Python object of a NumPy scalar, which prints as a number; anything else as it is."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
 def _shown(value: Any, unit: str) -> str:
-    return f"{value!r} {unit}".rstrip()
+    return f"{_plain(value)!r} {unit}".rstrip()
+
+
+# A time span of NumPy passes for an integer (it is registered as one), a boolean of Python is one.
+_NO_NUMBERS = (bool, np.bool_, np.timedelta64)
+
+
+def keep(instance: object, **checked: Any) -> None:
+    """Put values that have been checked, and so turned into Python's own, into fields of a frozen dataclass.
+
+    Parameters
+    ----------
+    instance : dataclass
+        The one that is being made, in its ``__post_init__``.
+    **checked
+        Values by the names of their fields.
+    """
+    for name, value in checked.items():
+        object.__setattr__(instance, name, value)
 
 
 def finite(name: str, value: Any, unit: str = "") -> float:
@@ -41,14 +66,14 @@ def finite(name: str, value: Any, unit: str = "") -> float:
     ValueError
         NaN or infinite.
     """
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
-        raise TypeError(f"{name} must be a real number{_in(unit)}, got {value!r}")
+    if isinstance(value, _NO_NUMBERS) or not isinstance(value, Real):
+        raise TypeError(f"{name} must be a real number{_in(unit)}, got {_plain(value)!r}")
     try:
         number = float(value)
     except OverflowError:  # an integer of more than 308 digits
         number = math.inf
     if not math.isfinite(number):
-        raise ValueError(f"{name} must be finite{_in(unit)}, got {value!r}")
+        raise ValueError(f"{name} must be finite{_in(unit)}, got {_plain(value)!r}")
     return number
 
 
@@ -109,11 +134,24 @@ def angle_within(name: str, value: Any, lowest_deg: float, highest_deg: float) -
         return number
     hint = ""
     if lowest_deg <= number <= highest_deg:
-        hint = f" (looks like degrees: use math.radians({value!r}))"
+        hint = f" (looks like degrees: use math.radians({_plain(value)!r}))"
     raise ValueError(
         f"{name} must lie between {lowest_deg:g}° and {highest_deg:g}°, that is in "
-        f"[{math.radians(lowest_deg):.4f}, {math.radians(highest_deg):.4f}] rad, got {value!r}{hint}"
+        f"[{math.radians(lowest_deg):.4f}, {math.radians(highest_deg):.4f}] rad, got {_plain(value)!r}{hint}"
     )
+
+
+def whole_number(name: str, value: Any, which: str = "") -> int:
+    """Check that `value` is an integer, of any sign, and return it as an int; `which` goes into the message.
+
+    Raises
+    ------
+    TypeError
+        Not an integer; a float with an integer value is none.
+    """
+    if isinstance(value, _NO_NUMBERS) or not isinstance(value, Integral):
+        raise TypeError(f"{name} must be an integer{which}, got {_plain(value)!r}")
+    return int(value)
 
 
 def integer_at_least(name: str, value: Any, lowest: int) -> int:
@@ -126,12 +164,35 @@ def integer_at_least(name: str, value: Any, lowest: int) -> int:
     ValueError
         Below `lowest`.
     """
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Integral):
-        raise TypeError(f"{name} must be an integer of at least {lowest}, got {value!r}")
-    number = int(value)
+    number = whole_number(name, value, f" of at least {lowest}")
     if number < lowest:
-        raise ValueError(f"{name} must be at least {lowest}, got {value!r}")
+        raise ValueError(f"{name} must be at least {lowest}, got {number!r}")
     return number
+
+
+def integer_within(name: str, value: Any, lowest: int, highest: int) -> int:
+    """Check that `value` is a whole number from `lowest` to `highest`; errors as in `integer_at_least`."""
+    number = integer_at_least(name, value, lowest)
+    if number > highest:
+        raise ValueError(f"{name} must be an integer from {lowest} to {highest}, got {number!r}")
+    return number
+
+
+def ascending(name: str, values: Any, unit: str = "") -> tuple[float, float]:
+    """Check that a range is two positive, ascending numbers, and return them.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming what is wrong.
+    """
+    listed = isinstance(values, list | tuple) or (isinstance(values, np.ndarray) and values.ndim == 1)
+    if not listed or len(values) != 2:
+        raise ValueError(f"{name} must be two numbers, lowest and highest, got {values!r}")
+    low, high = (positive(name, value, unit) for value in values)
+    if low >= high:
+        raise ValueError(f"{name} must ascend, got {values!r}")
+    return low, high
 
 
 def one_of(name: str, value: Any, choices: Collection[str]) -> None:
@@ -153,17 +214,38 @@ def finite_array(name: str, values: ArrayLike, unit: str = "") -> FloatArray:
     Raises
     ------
     TypeError
-        Not numeric, or complex.
+        Not numeric, complex, or with a boolean among its entries.
     ValueError
         An entry is NaN or infinite.
     """
-    array = np.asarray(values)
-    if array.dtype.kind not in "iuf":
-        raise TypeError(f"{name} must be real numbers{_in(unit)}, got {values!r}")
+    array = _real_array(name, values, unit)
     if not np.all(np.isfinite(array)):
         bad = array[~np.isfinite(array)].flat[0]
-        raise ValueError(f"{name} must be finite{_in(unit)}, got an entry {bad!r}")
-    return array.astype(np.float64)
+        raise ValueError(f"{name} must be finite{_in(unit)}, got an entry {_plain(bad)!r}")
+    return array
+
+
+def _real_array(name: str, values: Any, unit: str = "") -> FloatArray:
+    """Values as a new array of float64, infinite and undefined ones among them."""
+    try:
+        array = np.asarray(values)
+    except ValueError:  # rows of different lengths
+        array = np.empty(0, dtype=object)
+    mixed = isinstance(values, list | tuple) and _holds_no_number(values)
+    if array.dtype.kind not in "iuf" or mixed:
+        raise TypeError(f"{name} must be real numbers{_in(unit)}, got {values!r}")
+    # What passes the largest double becomes infinite, which is told as such.
+    with np.errstate(over="ignore"):
+        return array.astype(np.float64)
+
+
+def _holds_no_number(values: Any) -> bool:
+    """Whether lists within lists hold a boolean, which NumPy would take for a number among others."""
+    if isinstance(values, list | tuple):
+        return any(map(_holds_no_number, values))
+    if isinstance(values, np.ndarray):
+        return values.dtype.kind in "bm"
+    return isinstance(values, _NO_NUMBERS)
 
 
 def known_keys(
@@ -201,19 +283,27 @@ def known_keys(
     return dict(value)
 
 
+def _converted(name: str, values: ArrayLike, factor: float) -> Any:
+    """Values times a factor, in float64 whatever their own type: a float for a number, else an array."""
+    if np.asarray(values).dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be real numbers, got {_plain(values)!r}")
+    product = np.multiply(values, factor, dtype=np.float64)[()]
+    return float(product) if np.ndim(product) == 0 else product
+
+
 def rad_per_s(speed_rpm: ArrayLike) -> Any:
     """Convert revolutions per minute to rad/s; a number gives a number, an array an array."""
-    return np.multiply(speed_rpm, math.pi / 30.0)[()]
+    return _converted("speed_rpm", speed_rpm, math.pi / 30.0)
 
 
 def rpm(speed: ArrayLike) -> Any:
     """Convert rad/s to revolutions per minute; a number gives a number, an array an array."""
-    return np.multiply(speed, 30.0 / math.pi)[()]
+    return _converted("speed", speed, 30.0 / math.pi)
 
 
 def watt(power_hp: ArrayLike) -> Any:
     """Convert horsepower (745.69987 W) to watt; a number gives a number, an array an array."""
-    return np.multiply(power_hp, WATT_PER_HORSEPOWER)[()]
+    return _converted("power_hp", power_hp, WATT_PER_HORSEPOWER)
 
 
 @dataclass(frozen=True)
@@ -246,11 +336,14 @@ class Material:
     yield_strength: float
 
     def __post_init__(self) -> None:
-        within("density", self.density, 100.0, 30e3, "kg/m³")
-        within("youngs_modulus", self.youngs_modulus, 1e8, 2e12, "Pa")
-        within("poissons_ratio", self.poissons_ratio, 0.0, 0.5)
-        within("viscous_loss_factor", self.viscous_loss_factor, 0.0, 0.01, "s")
-        within("yield_strength", self.yield_strength, 1e6, 1e10, "Pa")
+        keep(
+            self,
+            density=within("density", self.density, 100.0, 30e3, "kg/m³"),
+            youngs_modulus=within("youngs_modulus", self.youngs_modulus, 1e8, 2e12, "Pa"),
+            poissons_ratio=within("poissons_ratio", self.poissons_ratio, 0.0, 0.5),
+            viscous_loss_factor=within("viscous_loss_factor", self.viscous_loss_factor, 0.0, 0.01, "s"),
+            yield_strength=within("yield_strength", self.yield_strength, 1e6, 1e10, "Pa"),
+        )
 
 
 STEEL = Material(
@@ -287,6 +380,9 @@ class MeshLoad:
     mass: float
 
     def __post_init__(self) -> None:
-        nonnegative("stiffness", self.stiffness)
-        within("damping", self.damping, 0.0, 0.01, "s")
-        nonnegative("mass", self.mass)
+        keep(
+            self,
+            stiffness=nonnegative("stiffness", self.stiffness),
+            damping=within("damping", self.damping, 0.0, 0.01, "s"),
+            mass=nonnegative("mass", self.mass),
+        )

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.parameters import nonnegative, one_of, positive
+from facegear.parameters import finite_array, keep, nonnegative, one_of, positive
 from facegear.piecewise import (
     Array,
     FourierSeries,
@@ -29,6 +29,9 @@ from facegear.piecewise import (
 )
 
 Rate = Literal["frozen", "total"]
+
+# Stiffness, damping and loads along a rigid-body motion, over their largest.
+_RIGID = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +70,7 @@ class ContactLoad:
             raise TypeError(f"shape must be a PiecewiseChebyshev; got {type(self.shape).__name__}")
         for name in ("stiffness", "damping", "mass"):
             value = getattr(self, name)
-            object.__setattr__(self, name, nonnegative(name, value))
+            keep(self, **{name: nonnegative(name, value)})
         one_of("rate", self.rate, ("frozen", "total"))
         if self.weight is not None and self.weight.components != 1:
             raise ValueError(f"weight must have one component; got {self.weight.components}")
@@ -133,7 +136,7 @@ class PeriodicSystem:
             matrix = real_array(getattr(self, name), name, 2)
             if matrix.shape != (size, size) or size == 0:
                 raise ValueError(f"{name} must be square and as large as mass; got shape {matrix.shape}")
-            object.__setattr__(self, name, matrix)
+            keep(self, **{name: matrix})
         if np.abs(self.mass - self.mass.T).max() > 1e-12 * np.abs(self.mass).max():
             raise ValueError("mass must be symmetric; got a non-symmetric matrix")
         try:
@@ -142,7 +145,7 @@ class PeriodicSystem:
             raise ValueError(
                 "mass must be positive definite; got a matrix with a non-positive eigenvalue"
             ) from None
-        object.__setattr__(self, "loads", tuple(self.loads))
+        keep(self, loads=tuple(self.loads))
         for number, load in enumerate(self.loads):
             if not isinstance(load, ContactLoad):
                 raise TypeError(f"loads[{number}] must be a ContactLoad; got {type(load).__name__}")
@@ -151,7 +154,7 @@ class PeriodicSystem:
                     f"loads[{number}].shape must have {size} components, one a coordinate; "
                     f"got {load.shape.components}"
                 )
-        object.__setattr__(self, "period", positive("period", self.period, "s"))
+        keep(self, period=positive("period", self.period, "s"))
 
     @property
     def size(self) -> int:
@@ -293,7 +296,7 @@ class PeriodicSystem:
         """Return one value a load: those given, or else the present ones."""
         if values is None:
             return [float(getattr(load, name)) for load in self.loads]
-        array = np.asarray(values, dtype=float)
+        array = finite_array(name, values)
         if array.shape not in ((), (len(self.loads),)):
             raise ValueError(
                 f"{name} must be one number or {len(self.loads)}, one a load; got shape {array.shape}"
@@ -313,6 +316,103 @@ class PeriodicSystem:
         return replace(self, loads=loads)
 
 
+def rigid_motions(system: PeriodicSystem) -> Array:
+    """Rigid-body motions of a system: displacements r that meet neither spring nor damper nor load.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+
+    Returns
+    -------
+    array, shape (n, k)
+        r with K r = 0, C r = 0 and φ(t)ᵀr = 0 for each load, orthonormal with the mass as weight; k = 0 for a system
+        that hangs on something.
+    """
+    projection, root = _rigid_projection(system)
+    count = round(float(np.trace(projection)))
+    return np.asarray(root @ _columns(projection, count), dtype=float)
+
+
+def without_rigid_motion(system: PeriodicSystem) -> PeriodicSystem:
+    """Return what is left of a system when its rigid-body motions are taken out.
+
+    With q = B y + r s, BᵀM r = 0, the equations of y hold no s, because K r, C r and φᵀr vanish: the multipliers of y
+    are those of the system less two for each r, which are 1 with one eigenvector, since r s may drift. That double
+    multiplier is known to the square root of rounding only, 1e-8, whatever the method. Exact for any system with
+    constant mass M and loads without a mass of their own along r.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+
+    Returns
+    -------
+    PeriodicSystem
+        Unit mass and n − k coordinates; the system itself if it has no such motion.
+
+    Raises
+    ------
+    ValueError
+        If nothing is left: no spring, damper or load at all.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> spring = ContactLoad(PiecewiseChebyshev.constant([1.0, -1.0]), stiffness=3.0)
+    >>> pair = PeriodicSystem(np.diag([1.0, 2.0]), np.zeros((2, 2)), np.zeros((2, 2)), (spring,), 1.0)
+    >>> without_rigid_motion(pair).stiffness_matrix(0.0).round(12)
+    array([[4.5]])
+    """
+    projection, root = _rigid_projection(system)
+    count = round(float(np.trace(projection)))
+    if count == 0:
+        return system
+    if count == system.size:
+        raise ValueError("system must have a spring, a damper or a load; got rigid-body motions only")
+    basis = root @ _columns(np.eye(system.size) - projection, system.size - count)
+    loads = tuple(
+        replace(load, shape=PiecewiseChebyshev(load.shape.breakpoints, load.shape.coefficients @ basis))
+        for load in system.loads
+    )
+    damping, stiffness = (basis.T @ matrix @ basis for matrix in (system.damping, system.stiffness))
+    return replace(system, mass=np.eye(basis.shape[1]), damping=damping, stiffness=stiffness, loads=loads)
+
+
+def _rigid_projection(system: PeriodicSystem) -> tuple[Array, Array]:
+    """Projection on the rigid-body motions in coordinates Lᵀq, M = L Lᵀ, and L⁻ᵀ, which leads back to q."""
+    root = np.linalg.inv(np.linalg.cholesky(system.mass)).T
+    rows = [root.T @ system.stiffness @ root, root.T @ system.damping @ root]
+    rows += [load.shape.coefficients.reshape(-1, system.size) @ root for load in system.loads if _acts(load)]
+    sizes = [float(np.abs(row).max()) for row in rows]
+    stacked = [row / size for row, size in zip(rows, sizes, strict=True) if size > 0.0]
+    if not stacked:
+        return np.eye(system.size), root
+    _, values, vectors = np.linalg.svd(np.concatenate(stacked), full_matrices=True)
+    values = np.append(values, np.zeros(system.size - values.size))
+    null = vectors[values <= _RIGID * values[0]]
+    return null.T @ null, root
+
+
+def _acts(load: ContactLoad) -> bool:
+    return load.stiffness > 0.0 or load.damping > 0.0 or load.mass > 0.0
+
+
+def _columns(projection: Array, count: int) -> Array:
+    """Orthonormal columns that span what a projection leaves, shape (n, count).
+
+    They are taken from its own columns, the longest first, so that they change as smoothly as it does.
+    """
+    rest, found = projection.copy(), np.empty((len(projection), count))
+    for number in range(count):
+        # Rounding must not decide between columns of one length.
+        lengths = np.linalg.norm(rest, axis=0).round(6)
+        column = rest[:, int(lengths.argmax())]
+        found[:, number] = column / np.linalg.norm(column)
+        rest = rest - np.outer(found[:, number], found[:, number] @ rest)
+    return found
+
+
 @dataclass(frozen=True, eq=False)
 class LoadColumn:
     """Load parameters along a column of a map: V values, p loads.
@@ -328,7 +428,8 @@ class LoadColumn:
 
     def __post_init__(self) -> None:
         for name in ("mass", "damping", "stiffness"):
-            values = getattr(self, name)
+            values = np.asarray(getattr(self, name), dtype=np.float64)
+            keep(self, **{name: values})
             if values.shape != self.mass.shape or values.ndim != 2:
                 raise ValueError(f"{name} must have shape (values, loads) as the others; got {values.shape}")
             if not np.isfinite(values).all() or (values < 0.0).any():

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.parameters import finite_array, integer_at_least
+from facegear.parameters import finite, finite_array, integer_at_least, keep
 
 Array = NDArray[np.float64]
 Side = Literal["left", "right"]
@@ -94,8 +94,7 @@ class PiecewiseChebyshev:
                 f"coefficients must have shape ({breakpoints.size}, degree + 1, components), one series "
                 f"for each of the {breakpoints.size} breakpoints; got shape {coefficients.shape}"
             )
-        object.__setattr__(self, "breakpoints", breakpoints)
-        object.__setattr__(self, "coefficients", coefficients)
+        keep(self, breakpoints=breakpoints, coefficients=coefficients)
 
     @classmethod
     def fit(
@@ -238,9 +237,10 @@ class PiecewiseChebyshev:
 
     def shift(self, phase: float) -> PiecewiseChebyshev:
         """Return x ↦ f(x + phase), Eq. (5-2): ahead by `phase` of a period."""
+        phase = finite("phase", phase)
         if phase == 0.0:
             return self
-        moved = wrap(self.breakpoints - float(phase))
+        moved = wrap(self.breakpoints - phase)
         order = np.argsort(moved)
         return PiecewiseChebyshev(moved[order], self.coefficients[order])
 

@@ -93,7 +93,7 @@ def _value(node: yaml.Node, path: str) -> Any:
             line = _line(key_node)
             if not isinstance(key_node, yaml.ScalarNode):
                 raise PlainYamlError(f"line {line}: a key must be a word")
-            key = str(key_node.value)
+            key = _text(key_node)
             name = key if key.isprintable() else repr(key)
             here = f"{path}.{name}" if path else name
             if key in found:
@@ -104,7 +104,17 @@ def _value(node: yaml.Node, path: str) -> Any:
         return [_value(entry, f"{path}[{i}]") for i, entry in enumerate(node.value)]
     # A scalar in quotes is a word whatever it looks like.
     quoted = getattr(node, "style", None)
-    return str(node.value) if quoted else _plain_scalar(str(node.value))
+    return _text(node) if quoted else _plain_scalar(_text(node))
+
+
+def _text(node: yaml.Node) -> str:
+    """Text of a scalar; half a character, which YAML's escapes can write and no file can hold, is refused."""
+    text = str(node.value)
+    if any("\ud800" <= letter <= "\udfff" for letter in text):
+        raise PlainYamlError(
+            f"line {_line(node)}: {text!r} holds half a character (a surrogate), which is no text"
+        )
+    return text
 
 
 def _line(part: yaml.Event | yaml.Node) -> int:

@@ -17,7 +17,16 @@ from numpy.typing import ArrayLike
 from scipy import linalg, optimize, special
 
 from facegear.geometry import Drive
-from facegear.parameters import STEEL, FloatArray, Material, integer_at_least, within
+from facegear.parameters import (
+    STEEL,
+    FloatArray,
+    Material,
+    finite,
+    finite_array,
+    integer_within,
+    keep,
+    within,
+)
 
 BORE_RATIO_RANGE = (0.05, 0.9)
 MAX_NODAL_CIRCLES = 4
@@ -85,6 +94,10 @@ class RadialModes:
         slack = 1e-12
         if not np.all((x >= self.bore_ratio - slack) & (x <= 1.0 + slack)):
             raise ValueError(f"x must lie between the bore ratio {self.bore_ratio} and 1, got {x}")
+        return self.continued(x, derivative)
+
+    def continued(self, x: FloatArray, derivative: int = 0) -> FloatArray:
+        """Evaluate as by a call, beyond the rim too: the functions (4-6) go on there, smooth as on the plate."""
         values = np.empty((self.roots.size, *x.shape))
         for row, (root, factors) in enumerate(zip(self.roots, self.coefficients, strict=True)):
             bessel = _bessel_functions(self.nodal_diameters, root, x, self.bore_ratio)
@@ -129,10 +142,10 @@ def radial_modes(
     >>> (radial_modes(0.5, 0.3, 0, 0).roots ** 2).round(3)
     array([13.024])
     """
-    within("bore_ratio", bore_ratio, *BORE_RATIO_RANGE)
-    within("poissons_ratio", poissons_ratio, 0.0, 0.5)
-    _count("nodal_circles", nodal_circles, MAX_NODAL_CIRCLES)
-    _count("nodal_diameters", nodal_diameters, MAX_NODAL_DIAMETERS)
+    bore_ratio = within("bore_ratio", bore_ratio, *BORE_RATIO_RANGE)
+    poissons_ratio = within("poissons_ratio", poissons_ratio, 0.0, 0.5)
+    nodal_circles = integer_within("nodal_circles", nodal_circles, 0, MAX_NODAL_CIRCLES)
+    nodal_diameters = integer_within("nodal_diameters", nodal_diameters, 0, MAX_NODAL_DIAMETERS)
     estimates = _ritz_roots(bore_ratio, poissons_ratio, nodal_circles, nodal_diameters)
     plate = (nodal_diameters, bore_ratio, poissons_ratio)
     roots = np.array([_refined_root(estimate, *plate) for estimate in estimates])
@@ -186,8 +199,8 @@ def centrifugal_stress(
         σ_r and σ_θ over ρ a² Ω² [-], of the shape of `x`. No displacement at the bore, no radial stress at
         the rim.
     """
-    x = np.asarray(x, dtype=float)
-    nu, c2 = poissons_ratio, bore_ratio**2
+    x = finite_array("x", x)
+    nu, c2 = finite("poissons_ratio", poissons_ratio), finite("bore_ratio", bore_ratio) ** 2
     d8 = 8 * ((1 + nu) + (1 - nu) * c2)
     b0 = (1 - nu) * c2 * ((3 + nu) - (1 + nu) * c2) / d8
     b1 = (1 + nu) * ((3 + nu) + (1 - nu) * c2**2) / d8
@@ -258,16 +271,19 @@ class Body:
             raise TypeError(f"drive must be a Drive, got {self.drive!r}")
         if not isinstance(self.material, Material):
             raise TypeError(f"material must be a Material, got {self.material!r}")
-        within("thickness_ratio", self.thickness_ratio, *THICKNESS_RATIO_RANGE)
+        keep(self, thickness_ratio=within("thickness_ratio", self.thickness_ratio, *THICKNESS_RATIO_RANGE))
         lowest, highest = (ratio * self.outer_radius for ratio in BORE_RATIO_RANGE)
-        within("bore_radius", self.bore_radius, lowest, highest, "m")
+        keep(self, bore_radius=within("bore_radius", self.bore_radius, lowest, highest, "m"))
         if self.bore_radius >= self.drive.inner_radius:
             raise ValueError(
                 f"bore_radius must be smaller than the inner radius {self.drive.inner_radius:.6g} m of the "
                 f"teeth, got {self.bore_radius!r} m"
             )
-        _count("nodal_circles", self.nodal_circles, MAX_NODAL_CIRCLES)
-        _count("nodal_diameters", self.nodal_diameters, MAX_NODAL_DIAMETERS)
+        keep(
+            self,
+            nodal_circles=integer_within("nodal_circles", self.nodal_circles, 0, MAX_NODAL_CIRCLES),
+            nodal_diameters=integer_within("nodal_diameters", self.nodal_diameters, 0, MAX_NODAL_DIAMETERS),
+        )
 
     @property
     def outer_radius(self) -> float:
@@ -320,13 +336,6 @@ class Body:
             Row m, column n: the mode with m nodal circles and n nodal diameters [Hz].
         """
         return np.sqrt(self.eigenvalues) / (2 * math.pi)
-
-
-def _count(name: str, value: int, highest: int) -> int:
-    number = integer_at_least(name, value, 0)
-    if number > highest:
-        raise ValueError(f"{name} must be an integer from 0 to {highest}, got {value!r}")
-    return number
 
 
 def _bessel_functions(

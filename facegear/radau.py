@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from facegear.parameters import integer_at_least, within
+from facegear.parameters import integer_within, keep, within
 from facegear.piecewise import SAME_INSTANT, Array
 from facegear.stepping import Family
 
@@ -89,9 +89,11 @@ class Radau:
     tolerance: float = 1e-11
 
     def __post_init__(self) -> None:
-        if integer_at_least("stages", self.stages, 3) > 40:
-            raise ValueError(f"stages must lie between 3 and 40, got {self.stages!r}")
-        within("tolerance", self.tolerance, 1e-15, 1e-2)
+        keep(
+            self,
+            stages=integer_within("stages", self.stages, 3, 40),
+            tolerance=within("tolerance", self.tolerance, 1e-15, 1e-2),
+        )
 
     def scaled_transition_matrices(self, family: Family) -> Array:
         """See :class:`facegear.floquet.Method`."""
@@ -121,6 +123,10 @@ class Radau:
         """Four more nodes a panel and a hundredth of the tolerance."""
         return Radau(min(self.stages + 4, 40), max(self.tolerance / 100.0, 1e-15))
 
+    def rounding(self, family: Family) -> float:
+        """See :class:`facegear.floquet.Method`: an angle as of its first panels, dead motions leave none behind."""
+        return _PANEL_ANGLE * (_graded_edges(family, _PANEL_ANGLE, -np.log(self.tolerance)).size - 1)
+
 
 def _graded_edges(family: Family, panel_angle: float, dead: float) -> Array:
     """Place the first ends of panels: short after each breakpoint, longer where fast motions have died.
@@ -137,7 +143,8 @@ def _graded_edges(family: Family, panel_angle: float, dead: float) -> Array:
         length = end - start
         death = np.minimum(dead / np.maximum(-rates.real, dead / (2.0 * length)), length)
         places = np.unique(np.append(death, [0.0, length]))
-        fastest = [np.abs(rates[death >= place]).max() for place in places[1:]]
+        # Where every motion has died, one panel spans the rest.
+        fastest = [np.abs(rates[death >= place]).max(initial=0.0) for place in places[1:]]
         angle = np.append(0.0, np.cumsum(fastest * np.diff(places)))
         count = max(1, int(np.ceil(angle[-1] / panel_angle)))
         parts.append(start + np.interp(np.linspace(0.0, angle[-1], count + 1)[:-1], angle, places))

@@ -20,8 +20,8 @@ from facegear.multiplier_curves import ComplexArray, MultiplierCurve
 from facegear.piecewise import Array
 
 # Largest angle [rad] by which the fastest live motion turns from one sample to the next.
-_SAMPLE_ANGLE = 0.2
-_FEWEST_SAMPLES = 64
+SAMPLE_ANGLE = 0.2
+FEWEST_SAMPLES = 64
 # A pair is followed if so many times its foretold coupling could make it unstable.
 _SAFETY = 4.0
 # Reach of the expansion around a sample, in steps: neighbours overlap.
@@ -34,8 +34,6 @@ _MOST_HALVINGS = 40
 _DECAYED = 1e-6
 # Relative accuracy of borders and of the speed where two phases meet: far below 0.01 rpm.
 SPEED_TOLERANCE = 1e-9
-# Matrices worked on at once.
-_BATCH = 512
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +61,7 @@ class Scan:
 def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) -> Scan:
     """Spectral radii on a grid, at all meetings of multipliers that matter, and at extremes between samples."""
     low, high = 1.0 / curve.highest_speed, 1.0 / curve.lowest_speed
-    grid = curve.motions.points(_SAMPLE_ANGLE, _FEWEST_SAMPLES)
+    grid = curve.motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES)
     seeds = np.concatenate([grid, [1.0 / speed for speed in hints if low < 1.0 / speed < high]])
     meetings, looked_at = _meetings(curve, seeds, _steps(grid, seeds), threshold)
     ends = np.array([curve.lowest_speed, curve.highest_speed])
@@ -86,12 +84,12 @@ def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: flo
 
     Returns them and all samples that were looked at for it.
     """
-    centres, reach = seeds, _REACH * steps
+    centres, reach, batch = seeds, _REACH * steps, curve.batch
     found, speeds, radii = [], [], []
     for _ in range(_ROUNDS):
         parts = [
-            _foretold(curve, centres[i : i + _BATCH], reach[i : i + _BATCH], threshold)
-            for i in range(0, centres.size, _BATCH)
+            _foretold(curve, centres[i : i + batch], reach[i : i + batch], threshold)
+            for i in range(0, centres.size, batch)
         ]
         meeting = np.concatenate([part[0] for part in parts])
         distance = np.concatenate([part[1] for part in parts])
@@ -204,7 +202,7 @@ class _Critical(NamedTuple):
 def _critical(curve: MultiplierCurve, speeds: Array, threshold: float) -> list[_Critical]:
     """Critical motions at speeds (m,)."""
     found = []
-    for part in np.array_split(speeds, speeds.size // _BATCH + 1):
+    for part in np.array_split(speeds, speeds.size // curve.batch + 1):
         values, vectors = np.linalg.eig(curve.transition_matrices(part))
         left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
         # Of a conjugate pair the one above the axis, at each speed.

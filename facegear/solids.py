@@ -44,7 +44,7 @@ def pinion_outline(drive: Drive, points_per_flank: int = 12) -> FloatArray:
     ndarray, shape (n, 2)
         Counter-clockwise [m]; below the base circle the flank is continued radially to the dedendum circle.
     """
-    integer_at_least("points_per_flank", points_per_flank, 2)
+    points_per_flank = integer_at_least("points_per_flank", points_per_flank, 2)
     roll = np.linspace(0.0, drive.pinion_tip_roll, points_per_flank)
     radius = drive.base_radius * np.hypot(1.0, roll)
     # Polar angle of the flank from the centre of its tooth space.

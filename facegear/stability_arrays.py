@@ -52,7 +52,7 @@ def swing(depth: float, frequencies: Sequence[float], shown: Sequence[float], cy
         ``multiplier_real``, ``multiplier_imag`` (frequency, number): the first has the larger modulus, or the
         positive imaginary part; ``motion`` (shown, time), time in parametric periods.
     """
-    integer_at_least("cycles", cycles, 1)
+    cycles = integer_at_least("cycles", cycles, 1)
     pairs = np.array([floquet.multipliers(classical.mathieu(w, depth)) for w in frequencies])
     first = np.where(np.abs(pairs.imag) > 0, pairs[:, :1].real + 1j * np.abs(pairs.imag), pairs)[:, 0]
     multiplier = np.stack([first, 1.0 / first], axis=1)
@@ -118,7 +118,7 @@ def transition_curves(depths: ArrayLike, count: int, harmonics: int = 60) -> xr.
         If a depth is 1 or more, where the stiffness changes sign.
     """
     values = _depths_below_one(depths)
-    integer_at_least("count", count, 1)
+    count = integer_at_least("count", count, 1)
     border = np.empty((4, count, values.size))
     for family, (start, first_row) in enumerate(((0, 1.0), (2, 0.0), (1, 0.5), (1, -0.5))):
         m = start + 2.0 * np.arange(harmonics)
@@ -204,7 +204,7 @@ def meissner_borders(depths: ArrayLike, count: int, frequencies: tuple[float, fl
         If a depth is outside [0, 1).
     """
     values = _depths_below_one(depths)
-    integer_at_least("count", count, 1)
+    count = integer_at_least("count", count, 1)
     low, high = finite_array("frequencies", frequencies)
     border = np.full((4, count, values.size), np.nan)
     # Equal steps in the period, in which the equations oscillate evenly.

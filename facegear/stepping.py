@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -128,6 +129,13 @@ class Family:
     def fastest_angle(self) -> float:
         """Largest ω T0 of the family [rad]."""
         return float((self.frequencies * self.periods).max())
+
+    @cached_property
+    def exponent_norm(self) -> float:
+        """Largest integral of ‖S A S⁻¹‖ over a period of the family [-], from the middles of the smooth pieces."""
+        lengths = np.diff(np.append(self.breakpoints, 1.0))
+        norms = np.linalg.norm(self.state_matrices(self.breakpoints + lengths / 2.0), 2, axis=(-2, -1))
+        return float((norms @ lengths).max())
 
     def assembled(self, fraction: Array) -> tuple[Array, Array, Array]:
         """M(t), C(t), K(t) at fractions (m,), each of shape (V, m, n, n) or with an axis of length 1."""

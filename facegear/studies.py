@@ -11,7 +11,7 @@ from facegear.explore import Choice, Quantity, Settings, Study
 from facegear.gearboxes import ProportionalGearbox
 from facegear.geometry import Drive
 from facegear.models import Model, replace_parameter
-from facegear.parameters import WATT_PER_HORSEPOWER, MeshLoad, rad_per_s
+from facegear.parameters import WATT_PER_HORSEPOWER, MeshLoad, keep, nonnegative, rad_per_s, within
 from facegear.periodic import PeriodicSystem
 from facegear.plate import Body
 from facegear.transverse import Transverse
@@ -160,6 +160,14 @@ class Oscillator:
     depth: float
     damping_ratio: float
     duty: float | None = None
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            depth=nonnegative("depth", self.depth),
+            damping_ratio=within("damping_ratio", self.damping_ratio, 0.0, math.nextafter(1.0, 0.0)),
+            duty=None if self.duty is None else within("duty", self.duty, 0.001, 0.999),
+        )
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equation of motion at a parametric frequency [rad/s], the natural frequency being 1 rad/s."""

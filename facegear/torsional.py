@@ -29,6 +29,7 @@ from facegear.parameters import (
     Material,
     finite_array,
     integer_at_least,
+    keep,
     nonnegative,
     one_of,
     positive,
@@ -108,8 +109,7 @@ def cylinder_inertia(radius: float, height: float, density: float = STEEL.densit
     TypeError, ValueError
         If a value is not a number above 0.
     """
-    positive("radius", radius, "m")
-    positive("height", height, "m")
+    radius, height = positive("radius", radius, "m"), positive("height", height, "m")
     return math.pi * positive("density", density, "kg/m³") * height * radius**4 / 2.0
 
 
@@ -176,17 +176,24 @@ class Gearbox:
         if not isinstance(self.drive, Drive):
             raise TypeError(f"drive must be a Drive, got {self.drive!r}")
         inertia, stiffness = _steel_scales(self.drive)
-        within("pinion_inertia", self.pinion_inertia, inertia / 100.0, inertia * 100.0, "kg m²")
-        positive("gear_inertia", self.gear_inertia, "kg m²")
-        positive("load_inertia", self.load_inertia, "kg m²")
-        within("mesh_stiffness", self.mesh_stiffness, stiffness / 500.0, stiffness * 20.0, "N/m")
-        within("mesh_damping", self.mesh_damping, 0.0, 0.01 * self.mesh_stiffness, "N s/m")
-        positive("input_stiffness", self.input_stiffness, "N m/rad")
-        nonnegative("input_damping", self.input_damping, "N m s/rad")
-        positive("output_stiffness", self.output_stiffness, "N m/rad")
-        nonnegative("output_damping", self.output_damping, "N m s/rad")
+        mesh = within("mesh_stiffness", self.mesh_stiffness, stiffness / 500.0, stiffness * 20.0, "N/m")
+        keep(
+            self,
+            pinion_inertia=within(
+                "pinion_inertia", self.pinion_inertia, inertia / 100.0, inertia * 100.0, "kg m²"
+            ),
+            gear_inertia=positive("gear_inertia", self.gear_inertia, "kg m²"),
+            load_inertia=positive("load_inertia", self.load_inertia, "kg m²"),
+            mesh_stiffness=mesh,
+            mesh_damping=within("mesh_damping", self.mesh_damping, 0.0, 0.01 * mesh, "N s/m"),
+            input_stiffness=positive("input_stiffness", self.input_stiffness, "N m/rad"),
+            input_damping=nonnegative("input_damping", self.input_damping, "N m s/rad"),
+            output_stiffness=positive("output_stiffness", self.output_stiffness, "N m/rad"),
+            output_damping=nonnegative("output_damping", self.output_damping, "N m s/rad"),
+        )
         # Fails here rather than at the first use if the contact ratio is not valid.
-        _ = self.mesh_contact_ratio
+        ratio = self.mesh_contact_ratio
+        keep(self, contact_ratio=None if self.contact_ratio is None else ratio)
 
     @property
     def mesh_contact_ratio(self) -> float:
@@ -368,6 +375,8 @@ class Torsional:
         if self.arm == "printed" and self.path != "skew_line":
             path = ContactPath(self.box.drive, self.box.mesh_contact_ratio)
             path.require_finite_speed(f"path = {self.path!r}")
+            if self.path == "centroid":
+                path.require_slow_centroid("path = 'centroid'")
 
     @property
     def _mesh(self) -> _Mesh:

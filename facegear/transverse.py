@@ -37,6 +37,8 @@ from facegear.parameters import (
     MeshLoad,
     finite_array,
     integer_at_least,
+    keep,
+    nonnegative,
     one_of,
     positive,
     within,
@@ -167,9 +169,9 @@ class Transverse:
         θ_c of each pinion [rad], between -2π and 2π and all different. What is left of an angle after whole
         teeth sets the phase of the pinion's mesh (5-1 to 5-4).
     contact_ratio : float, optional
-        Mesh periods that a tooth pair stays in mesh. Default None: Tregold's, as printed, that of whatever drive
-        the body has (`mesh_contact_ratio`); `drive.geometric_contact_ratio` is that of the true sweep. A number
-        stays when the drive is replaced.
+        Mesh periods that a tooth pair stays in mesh, 1 or more, and 1.001 or more with total rate. Default None:
+        Tregold's, as printed, that of whatever drive the body has (`mesh_contact_ratio`);
+        `drive.geometric_contact_ratio` is that of the true sweep. A number stays when the drive is replaced.
     rate : {"frozen", "total"}
         Whether the pinion follows ∂w/∂t at the contact centroid ("frozen", as printed in 4-1) or the deflection
         under the moving centroid ("total").
@@ -222,12 +224,19 @@ class Transverse:
                 f"power and power_speed go together, got power={self.power!r}, power_speed={self.power_speed!r}"
             )
         one_of("following", self.following, ("follower", "dead"))
-        integer_at_least("stress_harmonics", self.stress_harmonics, 0)
-        _ = self.driving_force
+        keep(self, stress_harmonics=integer_at_least("stress_harmonics", self.stress_harmonics, 0))
+        if self.power is not None:
+            keep(
+                self,
+                power=nonnegative("power", self.power, "W"),
+                power_speed=positive("power_speed", self.power_speed, "rad/s"),
+            )
         # Fails here rather than at the first use if the contact ratio is not valid.
         path = ContactPath(self.body.drive, self.mesh_contact_ratio)
+        keep(self, contact_ratio=None if self.contact_ratio is None else path.contact_ratio)
         if self.rate == "total":
             path.require_finite_speed("rate = 'total'")
+            path.require_slow_centroid("rate = 'total'")
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
         if angles.ndim != 1 or angles.size == 0:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
@@ -237,7 +246,7 @@ class Transverse:
         gaps[-1] = 2 * math.pi - np.ptp(np.mod(angles, 2 * math.pi))
         if gaps.min() < 1e-6:
             raise ValueError(f"pinion_angles must differ from one another, got {self.pinion_angles!r}")
-        object.__setattr__(self, "pinion_angles", tuple(angles.tolist()))
+        keep(self, pinion_angles=tuple(angles.tolist()))
 
     @property
     def mesh_contact_ratio(self) -> float:

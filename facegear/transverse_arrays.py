@@ -233,7 +233,7 @@ def stability_figure(
     xarray.Dataset
         As :func:`growth_map` and :func:`tongue_sections`.
     """
-    integer_at_least("cells", cells, 2)
+    cells = integer_at_least("cells", cells, 2)
     share = np.arange(1, cells + 1) / cells
     chart = growth_map(model, highest_rpm * share, parameter, highest * share, jobs=jobs)
     places = highest * (np.arange(integer_at_least("sections", sections, 1)) + 0.5) / sections

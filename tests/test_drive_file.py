@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -81,6 +82,47 @@ def test_clock_of_the_true_sweep():
     assert box.torsional.box.contact_ratio == box.drive.geometric_contact_ratio
 
 
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("module_mm: 3.175", "diametral_pitch_per_inch: 8"), ("power_kW: 447.42", "power_hp: 600.0001044")],
+)
+def test_the_same_in_another_unit(old, new):
+    found, same = parse_drive(CASE_1.replace(old, new)), parse_drive(CASE_1)
+    assert found.drive.module == pytest.approx(same.drive.module, rel=1e-15)
+    assert found.requirements.power == pytest.approx(same.requirements.power, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["<img src=x onerror='1'>", "a\nb", "# heading", "=1+1", "\u202e\0\x1b[31m", "Zahnrad Ⅱ 🦷", "a" * 80],
+)
+def test_a_name_is_any_text(name):
+    content = {**yaml.safe_load(CASE_1), "name": name}
+    assert parse_drive(yaml.safe_dump(content)).name == name
+
+
+@pytest.mark.parametrize("name", ["case_1", "case_2", "shaft_angle_85"])
+def test_every_speed_that_is_accepted_can_be_computed(name):
+    content = yaml.safe_load((DRIVES / f"{name}.yaml").read_text(encoding="utf-8"))
+    low, high = 1000.0, 1e5
+    while high - low > 1e-3:
+        middle = (low + high) / 2
+        content["operation"].update(lowest_speed_rpm=middle / 50, highest_speed_rpm=middle)
+        try:
+            parse_drive(yaml.safe_dump(content))
+        except DriveFileError:
+            high = middle
+        else:
+            low = middle
+    content["operation"].update(lowest_speed_rpm=low / 50, highest_speed_rpm=low)
+    file = parse_drive(yaml.safe_dump(content))
+    duty, model = file.requirements, file.transverse
+    driven = replace(model, power=duty.power, power_speed=duty.pinion_speed)
+    assert np.isfinite(driven.system(duty.speed_range[1]).stiffness).all()
+    with pytest.raises(ValueError, match="speed must lie in"):
+        driven.system(1.001 * duty.speed_range[1])
+
+
 # --- mistakes that people make ----------------------------------------------------------------------------------
 
 
@@ -101,7 +143,7 @@ def test_clock_of_the_true_sweep():
         (
             "  module_mm: 3.175",
             "  # module_mm: 3.175",
-            r"gears.module_mm is missing: m_d, module; valid is a number",
+            r"gears.module_mm or gears.diametral_pitch_per_inch is missing: m_d, module.* valid is a number",
         ),
         ("bore_radius_mm: 50", "bore_radius_mm:", r"body.bore_radius_mm is missing"),
         ("bore_radius_mm: 50", "bore_radius_mm: 0.05", r"body.bore_radius_mm .*50 would be valid, in mm"),
@@ -164,6 +206,74 @@ def test_clock_of_the_true_sweep():
             r"thickness_ratio = 3 is no key .*belongs to body",
         ),
         ("name: Case I", "name: 3", r"name must be text of 1 to 80 characters, got 3"),
+        ("name: Case I", "name: '  '", r"name must be text of 1 to 80 characters, got '  '"),
+        ("name: Case I", f"name: {'x' * 81}", r"name must be text of 1 to 80 characters, got 'xxx"),
+        ("name: Case I", 'name: "\\ud800"', r"line 2: '\\ud800' holds half a character"),
+        (
+            "module_mm: 3.175",
+            "module_mm: 3.175\n  diametral_pitch_per_inch: 8",
+            r"gears.module_mm and gears.diametral_pitch_per_inch say the same: give one of them",
+        ),
+        (
+            "power_kW: 447.42",
+            "power_kW: 447.42\n  power_hp: 600",
+            r"operation.power_kW and operation.power_hp say the same",
+        ),
+        (
+            "power_kW: 447.42",
+            "power: 447.42",
+            r"operation.power = 447.42 is no key .*did you mean operation.power_",
+        ),
+        (
+            "  power_kW: 447.42 # 600 hp\n",
+            "",
+            r"operation.power_kW or operation.power_hp is missing: power of one",
+        ),
+        (
+            "module_mm: 3.175",
+            "diametral_pitch_per_inch: 800",
+            r"gears.diametral_pitch_per_inch must lie in \[0.3, 200\] in 1/in, got 800",
+        ),
+        # What is swapped, mistyped or meant otherwise is said where the other reading would do.
+        (
+            "pinion_teeth: 26\n  gear_teeth: 130",
+            "pinion_teeth: 130\n  gear_teeth: 26",
+            r"must exceed gears.pinion_teeth=130, got 26 \(gears.pinion_teeth and gears.gear_teeth swapped\?\)",
+        ),
+        (
+            "lowest_speed_rpm: 100\n  highest_speed_rpm: 1000",
+            "lowest_speed_rpm: 1000\n  highest_speed_rpm: 100",
+            r"got 1000 rpm \(operation.lowest_speed_rpm and operation.highest_speed_rpm swapped\?\)",
+        ),
+        (
+            "module_mm: 3.175 # diametral pitch 8 per inch\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 50",
+            "module_mm: 8\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 20",
+            r"body.bore_radius_mm must lie between 29.* \(is 8 mm a diametral pitch per inch\?\)",
+        ),
+        (
+            "module_mm: 3.175 # diametral pitch 8 per inch\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 50",
+            "diametral_pitch_per_inch: 3.175\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 20",
+            r"body.bore_radius_mm must lie .* \(is 3.175 1/in a module in mm\?\)",
+        ),
+        ("thickness_ratio: 0.03", "thickness_ratio: 0,03", r"got '0,03' \(a point, not a comma: 0.03\)"),
+        (
+            "damping_us: 3",
+            "damping_us: 3 µs",
+            r"got '3 µs' \(the number alone, its unit is that of the key: 3\)",
+        ),
+        ("thickness_ratio: 0.03", "thickness_ratio: 6.9", r"thickness_ratio .*\(a ratio, not mm\?"),
+        ("stiffness: 1.0", "stiffness: 1e6", r"pinions.stiffness .*got 1000000.0 \(a ratio, not N/m\?"),
+        ("mass: 1.0", "mass: 3400", r"pinions.mass .*got 3400 \(a ratio, not kg\?"),
+        (
+            "highest_speed_rpm: 1000",
+            "highest_speed_rpm: 41650",
+            r"operation.lowest_speed_rpm must be lower",
+        ),
+        (
+            "lowest_speed_rpm: 100\n  highest_speed_rpm: 1000",
+            "lowest_speed_rpm: 1000\n  highest_speed_rpm: 41650",
+            r"operation.highest_speed_rpm must be at most 41589.6 rpm for this body.*got 41650 rpm",
+        ),
         (
             "name: Case I",
             "name: Case I\nmaterial: steel",

@@ -38,6 +38,8 @@ def test_examples_obey_the_schema(path):
     ("section", "key", "value"),
     [
         ("gears", "module_mm", 0.003),
+        ("gears", "diametral_pitch_per_inch", 8),
+        ("operation", "power_hp", 600),
         ("gears", "pinion_teeth", 26.5),
         ("gears", "teeth", 3),
         ("pinions", "damping_us", 3e-6),

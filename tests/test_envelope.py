@@ -12,6 +12,7 @@ from facegear.floquet import growth_rate
 from facegear.models import replace_parameter
 from facegear.parameters import rad_per_s, watt
 from facegear.tracing import tongues
+from facegear.transverse import Transverse
 
 SPEED = float(rad_per_s(5000.0))
 
@@ -103,3 +104,20 @@ def test_bad_input_is_named():
         largest_power(model_of(0.5), 100.0, 50.0)
     with pytest.raises(ValueError, match="power_speed must be greater"):
         mode_critical_powers(CASE_1, 0.0)
+
+
+@pytest.mark.parametrize("following", ["follower", "dead"])
+def test_without_nodal_diameters_no_power_makes_the_disk_flutter(following):
+    body = replace(CASE_1, nodal_diameters=0)
+    assert critical_power(body, SPEED, 50.0, following=following) == math.inf
+    # The eigenvalues say so as well: the force does not enter at all.
+    quiet, loud = (disk_growth_rate(body, power, SPEED, 50.0, following=following) for power in (0.0, 1e12))
+    assert quiet < 0
+    assert loud == pytest.approx(quiet, rel=1e-9)
+
+
+def test_without_nodal_diameters_no_power_is_the_largest():
+    load = FIGURES["4.4a"].load
+    model = Transverse(replace(CASE_1, nodal_diameters=0), load, power=1e5, power_speed=SPEED)
+    found = largest_power(model, 90.0, 100.0)
+    assert (found.power, found.label) == (math.inf, "")

@@ -509,10 +509,10 @@ def test_bands_do_not_depend_on_the_origin_of_time(system, phase):
 
 def test_bad_orders():
     for wrong in (0, -1):
-        with pytest.raises(ValueError, match=f"order = {wrong}"):
+        with pytest.raises(ValueError, match=f"order must be at least 1, got {wrong}"):
             hsu.resonance_bands(mathieu(0.1), order=wrong)
     for wrong in (1.0, True, "1"):
-        with pytest.raises(TypeError, match="order = "):
+        with pytest.raises(TypeError, match="order must be an integer"):
             hsu.resonance_bands(mathieu(0.1), order=wrong)
     with pytest.raises(ValueError, match="holds orders 1 to 2"):
         hsu.resonance_bands(modal_expansion(mathieu(0.1), 2), order=3)
@@ -535,11 +535,11 @@ def test_bad_speeds():
         return mathieu(0.1)
 
     for wrong in ((0.0, 1.0), (2.0, 1.0), (1.0, math.nan), (1.0, math.inf)):
-        with pytest.raises(ValueError, match="speeds = "):
+        with pytest.raises(ValueError, match="speeds must"):
             hsu.band_speeds(at, wrong)
-    with pytest.raises(ValueError, match="reach = -1"):
+    with pytest.raises(ValueError, match="reach must be 0 or greater, got -1"):
         hsu.resonance_bands(mathieu(0.1), reach=-1)
-    with pytest.raises(ValueError, match="points = 1"):
+    with pytest.raises(ValueError, match="points must be at least 2, got 1"):
         hsu.band_speeds(at, (1.0, 2.0), points=1)
 
 

@@ -8,7 +8,7 @@ from scipy.linalg import eigh_tridiagonal
 from scipy.optimize import brentq
 
 import facegear.maps
-from facegear import parallel, tracing
+from facegear import multiplier_curves, parallel, tracing
 from facegear.floquet import growth_rate
 from facegear.geometry import Drive
 from facegear.hsu import resonance_bands
@@ -17,8 +17,8 @@ from facegear.parameters import MeshLoad, rad_per_s, rpm
 from facegear.periodic import ContactLoad, PeriodicSystem
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
-from facegear.scanning import Scan
-from facegear.tracing import borders, tongues
+from facegear.scanning import Scan, scan_of
+from facegear.tracing import borders, search_seconds, tongues
 from facegear.transverse import Transverse
 
 TURN = 2.0 * np.pi
@@ -382,3 +382,39 @@ def test_samples_that_nearly_coincide_do_not_hide_the_peak():
     ((lower, upper, peak),) = tracing._runs(Curve, Scan(speeds, radii), 1e-12)
     assert (lower, upper) == pytest.approx((1.5, 2.5), rel=1e-8)
     assert peak == pytest.approx(2.0, rel=1e-6)
+
+
+def test_progress_says_beforehand_what_it_costs(capsys):
+    quiet = tongues(mathieu(0.3, 0.01, 1.0), 0.8, 2.5, progress=False)
+    assert capsys.readouterr().err == ""
+    assert tongues(mathieu(0.3, 0.01, 1.0), 0.8, 2.5, progress=True) == quiet
+    shown = capsys.readouterr().err
+    assert "tongues, about 0 s" in shown.split("\r")[1]
+    assert "matrices" in shown
+
+
+def test_few_matrices_are_worked_on_at_once_so_that_an_interruption_is_heard(monkeypatch):
+    alone = tongues(mathieu(0.3, 0.01, 1.0), 0.8, 2.5)
+    monkeypatch.setattr(multiplier_curves, "_CUBES_AT_ONCE", 7 * 2**3)
+    counts = []
+    curve = MultiplierCurve.of(mathieu(0.3, 0.01, 1.0), 0.8, 2.5, looked_at=counts.append)
+    computed = len(counts)
+    scan_of(curve, 1e-8, [])
+    assert curve.batch == 7
+    assert len(counts) > computed + 10
+    assert max(counts[computed:]) <= 7
+    again = tongues(mathieu(0.3, 0.01, 1.0), 0.8, 2.5)
+    assert [tongue.label for tongue in again] == [tongue.label for tongue in alone]
+    np.testing.assert_allclose([t.lower for t in again], [t.lower for t in alone], rtol=1e-9)
+
+
+def test_cost_grows_with_size_and_range():
+    small = Transverse(Body(Drive(26, 130, 3.175e-3), 0.03), MeshLoad(1.0, 3e-6, 1.0))
+    large = Transverse(
+        Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=2, nodal_diameters=6), MeshLoad(1.0, 3e-6, 1.0)
+    )
+    ends = [float(rad_per_s(speed)) for speed in (400.0, 600.0)]
+    assert search_seconds(small, *ends) < 1.0 < 3.0 < search_seconds(large, *ends) < 60.0
+    assert search_seconds(small, ends[0] / 4.0, ends[1]) > search_seconds(small, *ends)
+    with pytest.raises(ValueError, match="speed_range must ascend"):
+        search_seconds(small, *ends[::-1])
