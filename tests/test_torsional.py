@@ -141,7 +141,7 @@ def test_skew_line_starts_outside_and_leaves_inside():
     leaving = BOX.mesh_contact_ratio - 1
     assert old(leaving, "left")[1] == pytest.approx(-DRIVE.inner_radius * cosine, rel=1e-12)
     assert not old(leaving + 0.01).any()
-    assert young(leaving + 0.01)[0] == DRIVE.base_radius
+    assert young(leaving + 0.01)[0] == pytest.approx(DRIVE.base_radius, rel=1e-12)
     # The pair goes on where it stood at the end of its first period.
     assert old(0.0) == pytest.approx(young(1.0, "left"), rel=1e-12)
 
@@ -262,4 +262,5 @@ def test_wrong_kinds():
         mesh_stiffness(DRIVE, 0.0)
     with pytest.raises(ValueError, match="speed must be greater than 0"):
         Torsional(BOX).system(0.0)
-    assert isinstance(BOX, Gearbox)
+    with pytest.raises(TypeError, match="pinion_inertia must be"):
+        replace(BOX, pinion_inertia="1")
