@@ -228,7 +228,7 @@ def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> A
     """
     family = Family([system])
     scaled = _scaled_transition_matrix(family, method)
-    return np.asarray(family.inverse_scale[0] @ scaled @ family.scale[0], dtype=float)
+    return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
 
 
 def _scaled_transition_matrix(family: Family, method: Method | None) -> Array:
