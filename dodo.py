@@ -55,6 +55,8 @@ VIGNETTES = [
 
 # One thread a process: two notebooks share the machine, and threads slow small matrices down.
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+# Each notebook shares its maps out over its half of the processors (joblib's own name for that).
+HALF_THE_PROCESSORS = {"LOKY_MAX_CPU_COUNT": str(max(1, (os.cpu_count() or 1) // 2))}
 
 
 def files(folder: str, pattern: str) -> list[Path]:
@@ -98,7 +100,7 @@ def execute_notebook(notebook: Path) -> TaskFailed | None:
             stdout=subprocess.PIPE,
             stderr=messages,
             text=True,
-            env=os.environ | ONE_THREAD,
+            env=os.environ | ONE_THREAD | HALF_THE_PROCESSORS,
         ) as process,
     ):
         for line in process.stdout:
