@@ -233,13 +233,14 @@ def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> A
 
 def _scaled_transition_matrix(family: Family, method: Method | None) -> Array:
     """Φ of a single system, by :func:`default_method` if none is named, shape (2n, 2n)."""
-    if method is not None:
-        return method.scaled_transition_matrices(family)[0]
     # Asking first whether collocation applies would set it up twice, which is most of the work.
     try:
-        return Collocation().scaled_transition_matrices(family)[0]
+        matrices = (method or Collocation()).scaled_transition_matrices(family)
     except collocation.UnsuitableSystemError:
-        return AdaptiveMagnus().scaled_transition_matrices(family)[0]
+        if method is not None:
+            raise
+        matrices = AdaptiveMagnus().scaled_transition_matrices(family)
+    return np.asarray(matrices[0], dtype=float)
 
 
 def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:

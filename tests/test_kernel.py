@@ -23,7 +23,7 @@ print(json.dumps([in_use(), (factor @ factor).tolist()]))
 
 
 def computed(environment):
-    """What a process uses, and a product that it computes; warnings are errors, as in the tests."""
+    """Return what a process uses, and a product it computes; warnings are errors, as in the tests."""
     command = [sys.executable, "-W", "error", "-c", COMPUTE]
     done = subprocess.run(command, cwd=tool.ROOT, env=environment, stdout=subprocess.PIPE, check=True)
     return json.loads(done.stdout)

@@ -16,7 +16,7 @@ from facegear.geometry import Drive
 from facegear.kinematics import ContactPath
 from facegear.maps import stability_map
 from facegear.parameters import rad_per_s, rpm
-from facegear.periodic import PeriodicSystem
+from facegear.piecewise import fourier_series
 from facegear.torsional import (
     DEDENDUM,
     Gearbox,
@@ -166,18 +166,14 @@ def test_liouville(path):
 @pytest.mark.parametrize("path", ["skew_line", "centroid"])
 def test_kept_fourier_series_are_those_of_the_assembled_matrices(path):
     system = Torsional(BOX, path=path).system(70.0).shift(0.3).replace_loads(damping=[1e3, 4e3])
-    kept = system.fourier(5)
-    assembled = PeriodicSystem.fourier(system, 5)
-    for one, other in zip(kept, assembled, strict=True):
+    assembled = [
+        fourier_series(matrix, system.breakpoints, 5)
+        for matrix in (system.mass_matrix, system.damping_matrix, system.stiffness_matrix)
+    ]
+    for one, other in zip(system.fourier(5), assembled, strict=True):
         scale = np.abs(other.mean).max()
         for name in ("mean", "cosine", "sine"):
             assert getattr(one, name) == pytest.approx(getattr(other, name), abs=1e-12 * scale)
-
-
-def test_mesh_system_takes_springs_and_dampers_only():
-    system = Torsional(BOX).system(70.0)
-    with pytest.raises(ValueError, match="must be a spring and damper with total rate"):
-        replace(system, loads=[replace(load, rate="frozen") for load in system.loads])
 
 
 @settings(deadline=None, derandomize=True, max_examples=15)

@@ -40,7 +40,9 @@ def problem(kernel: str, here: dict[str, list[str]], there: dict[str, list[str]]
     if there["blas"] != [kernel] or there["numpy"]:
         return f"asked for the kernel {kernel} alone, got {there['blas']} and {there['numpy'] or 'no extensions'}"
     if there == here:
-        return f"{kernel} without extensions is what this processor has anyway; this run would show nothing new"
+        return (
+            f"{kernel} without extensions is what this processor has anyway; this run would show nothing new"
+        )
     return None
 
 
@@ -58,7 +60,9 @@ def main(options: list[str]) -> int:
     if message:
         sys.stderr.write(f"{message}\n")
         return 1
-    sys.stdout.write(f"OpenBLAS {kernel} instead of {', '.join(here['blas'])}; NumPy without {here['numpy']}\n")
+    sys.stdout.write(
+        f"OpenBLAS {kernel} instead of {', '.join(here['blas'])}; NumPy without {here['numpy']}\n"
+    )
     sys.stdout.flush()
     tests = [sys.executable, "-m", "pytest", *options]
     return subprocess.run(tests, cwd=ROOT, env=environment, check=False).returncode

@@ -12,7 +12,6 @@ import mpmath
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from scipy.linalg import expm
 
 TURN = 2 * math.pi
 
