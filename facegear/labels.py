@@ -70,7 +70,7 @@ def combination(system: PeriodicSystem, method: Method | None = None) -> Combina
     system : PeriodicSystem
         An unstable one, best taken at the peak of the growth rate.
     method : Method, optional
-        Method of :mod:`facegear.floquet` for the transition matrices.
+        Method of :mod:`facegear.floquet` for the transition matrix of the period.
 
     Returns
     -------
@@ -146,9 +146,8 @@ def _critical_motion(
 ) -> list[ComplexArray]:
     """States (q, q̇) of a multiplier's motion at instants of the period, up to a factor, from the first of them."""
     instants = [instant / _INSTANTS for instant in range(_INSTANTS)]
-    if method is None:
-        with suppress(UnsuitableSystemError):
-            return list(transition_matrices_to(instants, system) @ state)
+    with suppress(UnsuitableSystemError):
+        return list(transition_matrices_to(instants, system) @ state)
     return [_critical_state(system.shift(instant), critical, method) for instant in instants]
 
 
