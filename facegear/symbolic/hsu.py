@@ -151,7 +151,7 @@ def _sin(power: sp.Expr) -> sp.Expr:
 
 
 def _product(one: sp.Expr, other: sp.Expr) -> sp.Expr:
-    """Expanded product of two expanded sums; SymPy's own ``expand`` looks for much that is not in them."""
+    """Multiply two expanded sums term by term; SymPy's own ``expand`` looks for much that is not in them."""
     return sp.Add(*(a * b for a in sp.Add.make_args(one) for b in sp.Add.make_args(other)))
 
 
@@ -177,7 +177,7 @@ def _real_form(expression: sp.Expr) -> sp.Expr:
 
 
 def _coefficients(expression: sp.Expr, base: sp.Expr, power: int) -> sp.Expr:
-    """What stands by a power in an expanded sum."""
+    """Return what stands by a power in an expanded sum."""
     return expression.coeff(base, power)
 
 
