@@ -10,7 +10,7 @@ export MKL_NUM_THREADS := 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help environment book pdf chapter drive test test-slow test-lowest test-book lint format explorer bench references clean
+.PHONY: help environment book pdf chapter drive test test-slow test-kernel test-lowest test-book lint format explorer bench references clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -37,6 +37,9 @@ test: environment ## run the tests (a minute or so)
 
 test-slow: environment ## run the tests that take a minute each
 	@$(PYTEST) -n 2 --dist loadscope -m 'slow and not book'
+
+test-kernel: environment ## run the tests as on another processor
+	@$(PYTHON) tools/test_kernel.py -n 2 -m 'not slow and not book'
 
 test-lowest: environment ## run the tests with the oldest versions that pyproject.toml allows
 	@$(PYTHON) tools/test_lowest.py -n 2 -m 'not slow and not book'

@@ -112,7 +112,7 @@ def hill(
     --------
     >>> from facegear.floquet import growth_rate
     >>> round(growth_rate(mathieu(frequency=2.0, depth=0.2)), 4)
-    0.0501
+    0.0499
     """
     frequency = positive("frequency", frequency, "rad/s")
     natural_frequency = positive("natural_frequency", natural_frequency, "rad/s")

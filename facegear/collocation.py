@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.periodic import LoadColumn, PeriodicSystem
-from facegear.piecewise import Array
+from facegear.piecewise import Array, merge_breakpoints
 
 ComplexArray = NDArray[np.complex128]
 
@@ -255,6 +255,8 @@ class FreeMotion:
         Largest product of fastest frequency and panel length [rad].
     edges : array, optional
         Ends of panels to begin with, all breakpoints among them; chosen by `panel_angle` if left out.
+    instants : array
+        Fractions of the period that panels end at, besides the breakpoints.
 
     Raises
     ------
@@ -269,6 +271,7 @@ class FreeMotion:
         nodes: int = DEFAULT_NODES,
         panel_angle: float = DEFAULT_PANEL_ANGLE,
         edges: Array | None = None,
+        instants: Sequence[float] = (),
     ) -> None:
         self.system = system
         self.modes = FreeModes.of(system)
@@ -279,7 +282,8 @@ class FreeMotion:
         stiffest = float((column.stiffness @ self.mobility).max(initial=0.0))
         fastest = float(np.hypot(np.abs(self.modes.eigenvalues).max(), np.sqrt(stiffest)))
         if edges is None:
-            edges = panel_edges(system.breakpoints, fastest * system.period, panel_angle)
+            ends = merge_breakpoints([system.breakpoints, np.array(instants)])
+            edges = panel_edges(ends, fastest * system.period, panel_angle)
         self.edges = edges
         self.panels = _build(system, self.modes, nodes, self.edges)
         extremes = column.extremes()
@@ -356,14 +360,27 @@ class FreeMotion:
                 right += factor * panels.force_on_state[order]
         return np.asarray(np.linalg.solve(left, right), dtype=float)
 
+    def transition_matrices_to(self, instants: Sequence[float], column: LoadColumn) -> Array:
+        """Φ from the period's origin to some of the instants, for one value, shape (K, 2n, 2n); as Φ of the period."""
+        steps = self._steps(column)[0]
+        reached = [np.eye(steps.shape[-1])]
+        for step in steps:
+            reached.append(step @ reached[-1])
+        ends = [int(np.argmin(np.abs(self.edges - instant))) for instant in instants]
+        return np.stack([reached[end] for end in ends])
+
     def _chunk(self, column: LoadColumn) -> Array:
+        return chain(self._steps(column))
+
+    def _steps(self, column: LoadColumn) -> Array:
+        """Transition matrices of the panels, shape (V, P, 2n, 2n)."""
         known, forces = self._known
         if not np.array_equal(known.stacked(), column.stacked()):
             forces = self._forces(column)
         steps = self.panels.free - self.panels.input @ forces
         for panel, matrices in self._kicks(column).items():
             steps[:, panel] = steps[:, panel] @ matrices
-        return chain(steps)
+        return np.asarray(steps, dtype=float)
 
     def _kicks(self, column: LoadColumn) -> dict[int, Array]:
         """Jumps of the modal coordinates before a panel, each of shape (V, 2n, 2n)."""
@@ -406,6 +423,24 @@ def is_suitable(system: PeriodicSystem) -> bool:
     except UnsuitableSystemError:
         return False
     return True
+
+
+def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) -> Array:
+    """Transition matrices of the state (q, q̇) from the period's origin to some fractions of it, shape (K, 2n, 2n).
+
+    Where an instant is a breakpoint with a velocity kick, the state is that just before it.
+
+    Raises
+    ------
+    UnsuitableSystemError
+        If the free motion has rigid-body, overdamped or defective modes.
+    """
+    column = LoadColumn.of(system)
+    motion = FreeMotion(system, column, instants=instants)
+    modes = motion.modes
+    return np.asarray(
+        modes.state_from_real() @ motion.transition_matrices_to(instants, column) @ modes.real_from_state()
+    )
 
 
 def transition_matrices(

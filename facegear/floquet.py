@@ -257,8 +257,21 @@ def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> A
     array, shape (2n, 2n)
         Where the period's origin is a breakpoint with a velocity kick, Φ runs from just before it.
     """
-    chosen = default_method(system) if method is None else method
-    return np.asarray(transition_matrices([system], chosen)[0])
+    family = Family([system])
+    scaled = _scaled_transition_matrix(family, method)
+    return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
+
+
+def _scaled_transition_matrix(family: Family, method: Method | None) -> Array:
+    """Φ of a single system, by :func:`default_method` if none is named, shape (2n, 2n)."""
+    # Asking first whether collocation applies would set it up twice, which is most of the work.
+    try:
+        matrices = (method or Collocation()).scaled_transition_matrices(family)
+    except collocation.UnsuitableSystemError:
+        if method is not None:
+            raise
+        matrices = AdaptiveMagnus().scaled_transition_matrices(family)
+    return np.asarray(matrices[0], dtype=float)
 
 
 def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
@@ -297,8 +310,7 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
     -------
     array of complex, shape (2n,)
     """
-    chosen = default_method(system) if method is None else method
-    values = _eigenvalues(chosen.scaled_transition_matrices(Family([system])))[0]
+    values = _eigenvalues(_scaled_transition_matrix(Family([system]), method))
     return np.asarray(values[np.argsort(-np.abs(values), kind="stable")], dtype=complex)
 
 

@@ -8,6 +8,7 @@ numbered as in :mod:`facegear.modal`, by ascending natural frequency of the mean
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
 
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from facegear.collocation import UnsuitableSystemError, transition_matrices_to
 from facegear.floquet import Method, transition_matrix
 from facegear.periodic import PeriodicSystem
 from facegear.piecewise import Array
@@ -68,7 +70,7 @@ def combination(system: PeriodicSystem, method: Method | None = None) -> Combina
     system : PeriodicSystem
         An unstable one, best taken at the peak of the growth rate.
     method : Method, optional
-        Method of :mod:`facegear.floquet` for the transition matrices.
+        Method of :mod:`facegear.floquet` for the transition matrix of the period.
 
     Returns
     -------
@@ -78,16 +80,16 @@ def combination(system: PeriodicSystem, method: Method | None = None) -> Combina
     """
     modes = _MeanModes.of(system)
     matrix = transition_matrix(system, method)
-    values = np.linalg.eigvals(matrix)
-    critical = values[np.abs(values).argmax()]
-    growth = float(np.log(np.abs(critical))) / system.period
+    values, vectors = np.linalg.eig(matrix)
+    critical = int(np.abs(values).argmax())
+    growth = float(np.log(np.abs(values[critical]))) / system.period
     fastest = int(modes.eigenvalues.real.argmax())
     if growth > 0.0 and modes.eigenvalues[fastest].real >= 0.5 * growth:
         number = int(modes.numbers[fastest])
         return Combination(number, number, "mean", 0)
     action = np.zeros(modes.eigenvalues.size)
-    for instant in range(_INSTANTS):
-        action += modes.action(_critical_state(system.shift(instant / _INSTANTS), complex(critical), method))
+    for state in _critical_motion(system, complex(values[critical]), vectors[:, critical], method):
+        action += modes.action(state)
     return _strongest_pair(modes, action, 2.0 * np.pi / system.period)
 
 
@@ -137,6 +139,16 @@ class _MeanModes:
         frequency = np.abs(self.eigenvalues.imag)
         action = np.where(self.numbers > 0, energy / np.where(frequency > 0.0, frequency, 1.0), 0.0)
         return np.asarray(action / max(float(action.sum()), np.finfo(float).tiny), dtype=float)
+
+
+def _critical_motion(
+    system: PeriodicSystem, critical: complex, state: ComplexArray, method: Method | None
+) -> list[ComplexArray]:
+    """States (q, q̇) of a multiplier's motion at instants of the period, up to a factor, from the first of them."""
+    instants = [instant / _INSTANTS for instant in range(_INSTANTS)]
+    with suppress(UnsuitableSystemError):
+        return list(transition_matrices_to(instants, system) @ state)
+    return [_critical_state(system.shift(instant), critical, method) for instant in instants]
 
 
 def _critical_state(system: PeriodicSystem, critical: complex, method: Method | None) -> ComplexArray:

@@ -100,8 +100,10 @@ def stability_map(
 
     Examples
     --------
+    >>> from facegear.geometry import Drive
     >>> from facegear.parameters import MeshLoad, rad_per_s
-    >>> from facegear.transverse import Body, Drive, Transverse
+    >>> from facegear.plate import Body
+    >>> from facegear.transverse import Transverse
     >>> model = Transverse(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0))
     >>> chart = stability_map(model, rad_per_s([300.0, 600.0]), "stiffness", [0.5, 1.0], jobs=1)
     >>> chart.dims

@@ -11,13 +11,13 @@ with constant M, C, K at a given speed. Time is measured by the fraction x = t /
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache, partial
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.parameters import finite_array, keep, nonnegative, one_of, positive
+from facegear.parameters import finite_array, integer_at_least, keep, nonnegative, one_of, positive
 from facegear.piecewise import (
     Array,
     FourierSeries,
@@ -262,18 +262,28 @@ class PeriodicSystem:
             Constant parts are in the means. :func:`fourier_series` expands any other function of these
             matrices, as M(t)⁻¹K(t), in the same way.
         """
-        series = [
-            fourier_series(matrix, self.breakpoints, order)
-            for matrix in (self.mass_matrix, self.damping_matrix, self.stiffness_matrix)
-        ]
-        mean, cosine, sine = series[2].mean, series[2].cosine, series[2].sine
-        harmonics = 2.0 * np.pi * (1 + np.arange(order))
+        order = integer_at_least("order", order, 1)
+        none = np.zeros((order, self.size, self.size))
+        mass, damping, stiffness = (
+            FourierSeries(constant, none, none) for constant in (self.mass, self.damping, self.stiffness)
+        )
+        for load in self.loads:
+            still, moving, curving = (
+                partial(_dyad_series, load.shape, load.weight, derivative, order) for derivative in range(3)
+            )
+            mass = mass.plus(load.mass, still())
+            damping = damping.plus(load.damping, still())
+            stiffness = stiffness.plus(load.stiffness, still())
+            if load.rate == "total":
+                stiffness = stiffness.plus(load.damping / self.period, moving())
+                if load.mass > 0.0:
+                    damping = damping.plus(2.0 * load.mass / self.period, moving())
+                    stiffness = stiffness.plus(load.mass / self.period**2, curving())
         for at, matrix in self.impulses():
-            share = matrix / self.period
-            mean = mean + share
-            cosine = cosine + 2.0 * np.cos(harmonics * at)[:, None, None] * share
-            sine = sine + 2.0 * np.sin(harmonics * at)[:, None, None] * share
-        return series[0], series[1], FourierSeries(mean, cosine, sine)
+            angle = 2.0 * np.pi * at * (1 + np.arange(order))[:, None, None]
+            waves = FourierSeries(matrix, 2.0 * np.cos(angle) * matrix, 2.0 * np.sin(angle) * matrix)
+            stiffness = stiffness.plus(1.0 / self.period, waves)
+        return mass, damping, stiffness
 
     def replace_loads(
         self,
@@ -463,3 +473,20 @@ class LoadColumn:
         """Undo :meth:`stacked`; rounding below zero is taken off."""
         mass, damping, stiffness = np.split(np.maximum(values, 0.0), 3, axis=1)
         return cls(mass, damping, stiffness)
+
+
+@lru_cache(maxsize=256)
+def _dyad_series(
+    shape: PiecewiseChebyshev, weight: PiecewiseChebyshev | None, derivative: int, order: int
+) -> FourierSeries:
+    """Fourier series of w φ (dʳφ/dxʳ)ᵀ, which depend neither on speed nor on load parameters."""
+    other = shape.derivative(derivative)
+    breakpoints = (
+        shape.breakpoints if weight is None else merge_breakpoints([shape.breakpoints, weight.breakpoints])
+    )
+
+    def dyads(fraction: Array) -> Array:
+        force = shape(fraction) if weight is None else shape(fraction) * weight(fraction)
+        return np.asarray(force[:, :, None] * other(fraction)[:, None, :])
+
+    return fourier_series(dyads, breakpoints, order)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -279,6 +279,21 @@ class FourierSeries:
             + np.tensordot(np.sin(angle), self.sine, axes=1)
         )
 
+    def plus(self, factor: float, other: FourierSeries) -> FourierSeries:
+        """Return this series and `factor` times another of the same order."""
+        return FourierSeries(
+            self.mean + factor * other.mean,
+            self.cosine + factor * other.cosine,
+            self.sine + factor * other.sine,
+        )
+
+
+@lru_cache(maxsize=64)
+def _gauss_legendre(nodes: int) -> tuple[Array, Array]:
+    """Nodes and weights on [-1, 1]."""
+    x, weights = np.polynomial.legendre.leggauss(nodes)
+    return x, weights
+
 
 def fourier_series(
     function: Callable[[Array], Array], breakpoints: ArrayLike, order: int, *, tolerance: float = 1e-13
@@ -310,7 +325,7 @@ def fourier_series(
     harmonics = np.arange(order + 1)
 
     def integrate(nodes: int) -> NDArray[np.complex128]:
-        x, w = np.polynomial.legendre.leggauss(nodes)
+        x, w = _gauss_legendre(nodes)
         half, middle = (ends - edges) / 2.0, (ends + edges) / 2.0
         points = (middle[:, None] + half[:, None] * x).ravel()
         kernel = np.exp(2j * np.pi * np.outer(harmonics, points)) * (half[:, None] * w).ravel()

@@ -28,7 +28,6 @@ from facegear.parameters import (
     FloatArray,
     Material,
     finite_array,
-    integer_at_least,
     keep,
     nonnegative,
     one_of,
@@ -36,7 +35,7 @@ from facegear.parameters import (
     within,
 )
 from facegear.periodic import ContactLoad, PeriodicSystem
-from facegear.piecewise import FourierSeries, PiecewiseChebyshev, fourier_series
+from facegear.piecewise import PiecewiseChebyshev, fourier_series
 
 Arm = Literal["printed", "conjugate"]
 Path = Literal["skew_line", "contact_path", "centroid"]
@@ -285,57 +284,6 @@ def _mean_dyad(mesh: _Mesh) -> FloatArray:
     return mean
 
 
-@lru_cache(maxsize=256)
-def _dyad_series(shape: PiecewiseChebyshev, order: int) -> tuple[FourierSeries, FourierSeries]:
-    """Fourier series of φφᵀ and of φ (dφ/dx)ᵀ, x the fraction of the period."""
-
-    def against(other: PiecewiseChebyshev) -> FourierSeries:
-        def dyads(fraction: FloatArray) -> FloatArray:
-            return np.asarray(shape(fraction)[:, :, np.newaxis] * other(fraction)[:, np.newaxis, :])
-
-        return fourier_series(dyads, shape.breakpoints, order)
-
-    return against(shape), against(shape.derivative())
-
-
-@dataclass(frozen=True, eq=False)
-class MeshSystem(PeriodicSystem):
-    """Periodic system under tooth pairs that are springs and dampers with total rate.
-
-    Its Fourier series (7-16) are sums of those of φφᵀ and φφ̇ᵀ, which depend neither on speed nor on stiffness and
-    damping and are kept from one speed to the next.
-
-    Raises
-    ------
-    ValueError
-        Besides what :class:`facegear.periodic.PeriodicSystem` refuses, if a load has a mass, a weight or the frozen
-        rate.
-    """
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        for number, load in enumerate(self.loads):
-            if load.mass > 0.0 or load.weight is not None or load.rate != "total":
-                raise ValueError(f"loads[{number}] must be a spring and damper with total rate and no weight")
-
-    def fourier(self, order: int) -> tuple[FourierSeries, FourierSeries, FourierSeries]:
-        """Fourier series of M, C(t) and K(t); as :meth:`PeriodicSystem.fourier`."""
-        order = integer_at_least("order", order, 1)
-        zero = np.zeros((order, self.size, self.size))
-        parts = []
-        for constant in (self.mass, self.damping, self.stiffness):
-            parts.append([constant.copy(), zero.copy(), zero.copy()])
-        _, damping, stiffness = parts
-        for load in self.loads:
-            dyad, moving = _dyad_series(load.shape, order)
-            for i, name in enumerate(("mean", "cosine", "sine")):
-                damping[i] += load.damping * getattr(dyad, name)
-                stiffness[i] += load.stiffness * getattr(dyad, name)
-                stiffness[i] += load.damping / self.period * getattr(moving, name)
-        mass, damped, stiff = (FourierSeries(*part) for part in parts)
-        return mass, damped, stiff
-
-
 @dataclass(frozen=True)
 class Torsional:
     """Torsional vibration of a gearbox (7-10 to 7-13).
@@ -402,7 +350,7 @@ class Torsional:
         """Speeds of the face gear at which the mesh frequency is a natural one (7-20), shape (3,) [rad/s]."""
         return natural_speed(self.box.drive, self.natural_frequencies())
 
-    def system(self, speed: float) -> MeshSystem:
+    def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed (7-10).
 
         Parameters
@@ -412,9 +360,8 @@ class Torsional:
 
         Returns
         -------
-        MeshSystem
-            A :class:`facegear.periodic.PeriodicSystem` with three coordinates, one load for each tooth pair and the
-            period T0 (3-20).
+        PeriodicSystem
+            Three coordinates, one load for each tooth pair, the period T0 (3-20).
 
         Raises
         ------
@@ -427,4 +374,4 @@ class Torsional:
             for shape in self.shapes
         )
         period = mesh_period(box.drive, speed)
-        return MeshSystem(box.mass_matrix, box.damping_matrix, box.stiffness_matrix, loads, period)
+        return PeriodicSystem(box.mass_matrix, box.damping_matrix, box.stiffness_matrix, loads, period)

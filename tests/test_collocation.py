@@ -1,5 +1,6 @@
 """Contact-force collocation and whole columns of a map, on a synthetic disk with 28 states."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -23,10 +24,17 @@ from benchmarks.synthetic_disk import (
     synthetic_disk,
     synthetic_shafts,
 )
-from facegear.collocation import FreeModes, UnsuitableSystemError, chain, transition_matrices
+from facegear.collocation import (
+    FreeModes,
+    UnsuitableSystemError,
+    chain,
+    transition_matrices,
+    transition_matrices_to,
+)
 from facegear.columns import column_spectral_radii, family_spectral_radii, interpolated_spectral_radii
 from facegear.floquet import AdaptiveMagnus, Collocation, multipliers, spectral_radii
 from facegear.periodic import LoadColumn, PeriodicSystem
+from facegear.stepping import Family
 
 RPM = np.pi / 30.0
 
@@ -139,6 +147,25 @@ def test_columns_with_total_rate(shapes):
         cell = system.replace_loads(mass=mass[i], damping=0.5, stiffness=1e5)
         exact = np.abs(multipliers(cell, AdaptiveMagnus(1e-12))[0])
         assert radii[i] == pytest.approx(exact, abs=1e-9 * max(1.0, exact))
+
+
+@pytest.mark.parametrize("rate", ["frozen", "total"])
+def test_matrices_to_an_instant_turn_the_period_into_that_of_a_shifted_system(shapes, rate):
+    system = synthetic_disk(600.0 * RPM, shapes[:1])
+    system = replace(system, loads=[replace(load, rate=rate) for load in system.loads])
+    # A breakpoint with a kick, an instant between breakpoints, the end.
+    instants = [float(system.breakpoints[1]), 0.37, 1.0]
+    reached = transition_matrices_to(instants, system)
+    (whole,) = transition_matrices([system])
+    scale = Family([system]).scale
+    for instant, matrix in zip(instants, reached, strict=True):
+        (shifted,) = transition_matrices([system.shift(instant)])
+        one, other = (
+            scale @ product @ np.linalg.inv(scale) for product in (shifted @ matrix, matrix @ whole)
+        )
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-11)
+    one, other = (scale @ product @ np.linalg.inv(scale) for product in (reached[-1], whole))
+    np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-11)
 
 
 def test_rigid_body_motion_takes_the_general_route():

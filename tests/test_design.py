@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import pytest
 
 from facegear import design
 from facegear.parameters import MeshLoad, rad_per_s, watt
 from facegear.plate import Body
 from facegear.tooth_design import constant_diametral_pitch, root_stress
+from tests.comparing import agree
 
 DRIVE = constant_diametral_pitch(25)
 LOAD = MeshLoad(stiffness=0.8, damping=1e-5, mass=1.0)
@@ -42,10 +45,12 @@ def test_design_flow():
     needed = design.Requirements(float(watt(600.0)), float(rad_per_s(5000.0)), 1.5, speeds)
     ((result,),) = design.design_family([DRIVE], LOAD, needed, [speeds[1]], (0.036, 0.039), jobs=1)
     alone = design.design_body(DRIVE, LOAD, needed, (0.036, 0.039))
-    assert alone == result
+    # One of the two limits the threads of BLAS; the tip of a lobe is found to 1e-6 of the thickness.
+    assert agree(alone, result, rel=1e-6)
     assert result.body == Body(DRIVE, result.critical.thickness_ratio)
     assert result.allowable_stress == pytest.approx(439.9e6 / 1.5)
-    assert result.stress_safe == (result.root_stress < result.allowable_stress)
-    assert (
-        root_stress(constant_diametral_pitch(22), needed.power, needed.pinion_speed) > result.allowable_stress
-    )
+    # With fewer teeth of the same pitch the pinion is smaller and the force at its teeth larger.
+    small = constant_diametral_pitch(22)
+    assert result.stress_safe
+    assert root_stress(small, needed.power, needed.pinion_speed) > result.allowable_stress
+    assert not replace(result, root_stress=result.allowable_stress * 1.001).stress_safe

@@ -6,7 +6,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from facegear import floquet
 from facegear.cases import CASE_1, CASE_2, FIGURES
 from facegear.disk import disk_matrices, shape_vector, unit_shape
 from facegear.edge_stiffness import (
@@ -66,7 +65,7 @@ def test_only_the_rim_term_of_a_follower_force_is_unsymmetric():
 def test_harmonics_beyond_twice_the_diameters_do_nothing():
     complete = edge_load_stiffness(EdgeLoadStress(CASE_1, 1.0, 10.0, complete_harmonics(CASE_1)))
     more = edge_load_stiffness(EdgeLoadStress(CASE_1, 1.0, 10.0, 11))
-    np.testing.assert_array_equal(more, complete)
+    np.testing.assert_allclose(more, complete, rtol=0.0, atol=1e-12 * np.abs(complete).max())
     printed = edge_load_stiffness(EdgeLoadStress(CASE_1, 1.0, 10.0, 5))
     # k = 6 couples n = 3 with n = -3 only: the last four coordinates.
     changed = np.abs(complete - printed) > 1e-9 * np.abs(complete).max()
@@ -104,7 +103,7 @@ class TestPowerOfTheModel:
     def test_only_the_stiffness_changes_and_in_proportion(self):
         plain, loaded = FIGURES["4.4a"].model().system(70.0), self.MODEL.system(70.0)
         double = replace(self.MODEL, power=4e5).system(70.0)
-        np.testing.assert_array_equal(plain.damping, loaded.damping)
+        np.testing.assert_allclose(loaded.damping, plain.damping, rtol=1e-12, atol=0.0)
         np.testing.assert_allclose(
             double.stiffness - plain.stiffness, 2 * (loaded.stiffness - plain.stiffness), atol=1e-6
         )
@@ -114,9 +113,11 @@ class TestPowerOfTheModel:
     def test_no_power_is_no_force(self):
         plain = FIGURES["4.4a"].model()
         assert plain.driving_force == 0.0
-        np.testing.assert_array_equal(plain.system(50.0).stiffness, disk_matrices(CASE_1, 50.0)[1])
+        expected = disk_matrices(CASE_1, 50.0)[1]
         none = replace(self.MODEL, power=0.0)
-        assert floquet.growth_rate(none.system(50.0)) == floquet.growth_rate(plain.system(50.0))
+        for model in (plain, none):
+            stiffness = model.system(50.0).stiffness
+            np.testing.assert_allclose(stiffness, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
 
     def test_each_pinion_brings_its_force_and_travel_mirrors_the_place(self):
         angles = (0.0, 1.2)

@@ -1,6 +1,7 @@
 """The gearbox of table 7.1 and the captions of chapter 7."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -10,7 +11,6 @@ from facegear.gearboxes import (
     GEAR_INERTIA_RATIO,
     HIGHEST_SPEED_RPM,
     LOAD_INERTIA_RATIO,
-    ProportionalGearbox,
 )
 from facegear.maps import stability_map
 from facegear.models import replace_parameter
@@ -111,4 +111,5 @@ def test_bad_dampings_and_factors():
         FIGURES["7.12a"].model(correction_factor=2.0)
     with pytest.raises(ValueError, match="arm must be"):
         FIGURES["7.12a"].model(arm="round")
-    assert isinstance(FIGURES["7.12a"].base, ProportionalGearbox)
+    with pytest.raises(TypeError, match="load_inertia must be"):
+        replace(FIGURES["7.12a"].base, load_inertia="12")

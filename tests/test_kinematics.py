@@ -260,7 +260,7 @@ def test_overlaid_pairs_lag_by_one_pitch():
     states = path.overlaid(4, rotation)
     assert states.radius.shape == (4, 161)
     for j in range(1, 4):
-        np.testing.assert_array_equal(states.in_contact[j, 40 * j :], states.in_contact[0, : 161 - 40 * j])
+        assert states.in_contact[j, 40 * j :].tolist() == states.in_contact[0, : 161 - 40 * j].tolist()
         np.testing.assert_allclose(
             states.radius[j, 40 * j :], states.radius[0, : 161 - 40 * j], rtol=0, atol=1e-9
         )

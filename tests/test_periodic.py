@@ -254,6 +254,23 @@ def test_fourier_includes_the_impulses_of_a_moving_mass():
     assert stiffness.sine[:, 0, 0] == pytest.approx(2 * total[1:].imag, abs=1e-12)
 
 
+@pytest.mark.parametrize("weighted", [False, True])
+def test_fourier_series_of_a_load_are_those_of_the_assembled_matrices(weighted):
+    shape = PiecewiseChebyshev.fit(
+        lambda x, p: np.stack([np.cos(2 * np.pi * x), np.sin(2 * np.pi * x) ** 2], 1), [0.0]
+    )
+    weight = PiecewiseChebyshev(np.array([0.2, 0.55]), np.array([[[1.0]], [[0.25]]])) if weighted else None
+    mass = 0.0 if weighted else 0.5
+    load = ContactLoad(shape, stiffness=3.0, damping=0.2, mass=mass, rate="total", weight=weight)
+    for period in (2.0, 3.0):
+        system = PeriodicSystem(np.diag([1.0, 2.0]), 0.1 * np.eye(2), np.eye(2), (load, load), period)
+        matrices = (system.mass_matrix, system.damping_matrix, system.stiffness_matrix)
+        for found, matrix in zip(system.fourier(7), matrices, strict=True):
+            expected = fourier_series(matrix, system.breakpoints, 7)
+            for name in ("mean", "cosine", "sine"):
+                assert getattr(found, name) == pytest.approx(getattr(expected, name), abs=1e-11)
+
+
 def test_fourier_series_converges_to_the_function():
     def matrix(x):
         return (np.exp(np.cos(2 * np.pi * x)) * np.sin(2 * np.pi * x))[:, None, None]

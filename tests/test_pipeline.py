@@ -216,6 +216,16 @@ def test_a_drive_file_is_read_by_the_report_on_a_drive_alone(project: Path) -> N
     assert report == {"case_4.yaml", "drive_tongues.nc"}
 
 
+def test_the_longest_notebooks_are_started_first() -> None:
+    script = "import json, dodo; print(json.dumps([dodo.LONGEST, dodo.task_book()['task_dep']]))"
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
+    longest, order = json.loads(done.stdout)
+    names = [path.stem for path in (ROOT / "notebooks").glob("*.ipynb")]
+    assert {name.removeprefix("notebook:") for name in order[: len(longest)]} == set(longest) <= set(names)
+    assert sorted(order) == sorted(f"notebook:{name}" for name in names)
+
+
 @pytest.mark.slow
 def test_failing_notebook_stops_the_book_and_keeps_the_others(project: Path) -> None:
     write_notebook(project / "notebooks" / "03_one.ipynb", "raise RuntimeError('on purpose')")

@@ -38,7 +38,7 @@ def widget():
 def test_map_is_there_from_the_start_and_white_where_stable(widget):
     expected = explore.view(STUDY, 1.3, 0.5).chart
     unstable = explore.unstable(expected)
-    assert np.array_equal(np.isnan(shown_map(widget)), ~unstable)
+    assert np.isnan(shown_map(widget)).tolist() == (~unstable).tolist()
     assert shown_map(widget)[unstable] == pytest.approx(expected.values[unstable])
     assert widget.figure.layout.xaxis.title.text == "parametric frequency ω/ω₀"
     assert widget._repr_mimebundle_()["application/vnd.jupyter.widget-view+json"]
@@ -116,12 +116,12 @@ def test_what_cannot_be_made_is_said_beside_the_controls_and_the_map_stays():
     before = shown_map(widget)
     widget.controls["damping_ratio"].value = 0.15
     assert "damping_ratio &lt;too large&gt;" in widget.message.value
-    assert np.array_equal(shown_map(widget), before, equal_nan=True)
+    np.testing.assert_allclose(shown_map(widget), before, rtol=1e-12)
     click(widget, 2.0, 0.8)
     assert "unstable" in text(widget.report)
     widget.controls["damping_ratio"].value = 0.05
     assert widget.message.value == ""
-    assert not np.array_equal(shown_map(widget), before, equal_nan=True)
+    assert not np.allclose(shown_map(widget), before, equal_nan=True)
 
 
 def test_an_error_of_the_program_is_not_taken_for_an_impossible_setting():
@@ -149,8 +149,9 @@ def test_the_last_of_two_quick_changes_wins(widget):
         return coarse
 
     coarse = asyncio.run(hurry())
-    assert not np.array_equal(coarse, shown_map(widget), equal_nan=True)
-    assert np.array_equal(shown_map(widget), shown_map(alone), equal_nan=True)
+    assert not np.allclose(coarse, shown_map(widget), equal_nan=True)
+    # The cells shown are the unstable ones; the map of one widget is computed at once, of the other by stages.
+    np.testing.assert_allclose(shown_map(widget), shown_map(alone), rtol=1e-8, atol=1e-8)
 
 
 def words(figure):

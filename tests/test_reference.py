@@ -257,7 +257,7 @@ def test_variable_without_tolerance_cannot_be_saved(tmp_path):
 
 def test_rows_of_different_length_are_filled_up():
     found = [[SimpleNamespace(label="(1+1)/1", lower=2.0), SimpleNamespace(label="(1+2)/1", lower=3.0)], []]
-    np.testing.assert_array_equal(reference.filled_rows(found, "lower"), [[2.0, 3.0], [np.nan, np.nan]])
+    np.testing.assert_allclose(reference.filled_rows(found, "lower"), [[2.0, 3.0], [np.nan, np.nan]])
     labels = reference.filled_labels(found)
     assert labels.tolist() == [["(1+1)/1", "(1+2)/1"], ["", ""]]
     assert reference.label_rows(xr.DataArray(labels)) == [["(1+1)/1", "(1+2)/1"], []]

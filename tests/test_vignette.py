@@ -28,7 +28,7 @@ def test_unstable_cells_are_coloured_and_stable_ones_left_open(theme):
     figure.canvas.draw()
     (mesh,) = figure.axes[0].collections
     shown = mesh.get_array().reshape(GROWTH.shape)
-    assert np.array_equal(np.ma.getmaskarray(shown), GROWTH <= 0)
+    assert np.ma.getmaskarray(shown).tolist() == (GROWTH <= 0).tolist()
     assert figure.patch.get_alpha() == figure.axes[0].patch.get_alpha() == 0.0
 
 

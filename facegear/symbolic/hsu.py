@@ -150,11 +150,16 @@ def _sin(power: sp.Expr) -> sp.Expr:
     return (power - 1 / power) / (2 * sp.I)
 
 
+def _product(one: sp.Expr, other: sp.Expr) -> sp.Expr:
+    """Multiply two expanded sums term by term; SymPy's own ``expand`` looks for much that is not in them."""
+    return sp.Add(*(a * b for a in sp.Add.make_args(one) for b in sp.Add.make_args(other)))
+
+
 def _real_form(expression: sp.Expr) -> sp.Expr:
-    """Sum of cosines and sines equal to a Laurent polynomial with conjugate coefficients."""
+    """Sum of cosines and sines equal to an expanded Laurent polynomial with conjugate coefficients."""
     bases = (_FAST["k"], _FAST["j"], _EXCITATION, _SLOW)
     shift = 4  # More than any power that occurs, so that the product with it is a polynomial.
-    polynomial = sp.Poly(sp.expand(expression * sp.Mul(*bases) ** shift), *bases)
+    polynomial = sp.Poly(_product(expression, sp.Mul(*(base**shift for base in bases))), *bases, expand=False)
     factors = {tuple(power - shift for power in powers): factor for powers, factor in polynomial.terms()}
     total = sp.S.Zero
     for powers, factor in factors.items():
@@ -172,7 +177,8 @@ def _real_form(expression: sp.Expr) -> sp.Expr:
 
 
 def _coefficients(expression: sp.Expr, base: sp.Expr, power: int) -> sp.Expr:
-    return sp.expand(expression).coeff(base, power)
+    """Return what stands by a power in an expanded sum."""
+    return expression.coeff(base, power)
 
 
 def _forcing(i: str, coordinates: str) -> sp.Expr:
@@ -247,10 +253,10 @@ def derive(kind: Kind) -> Derivation:
 
     resonant, variation, averaged = {}, {}, {}
     for i in coordinates:
-        tuned = sp.expand(forcing[i].subs(_EXCITATION, excitation))
+        tuned = forcing[i].subs(_EXCITATION, excitation)
         near = sum(
             (
-                _mean(_coefficients(tuned, _FAST[i], m), coordinates.replace(i, "")) * _FAST[i] ** m
+                _product(_mean(_coefficients(tuned, _FAST[i], m), coordinates.replace(i, "")), _FAST[i] ** m)
                 for m in (1, -1)
             ),
             sp.S.Zero,
@@ -259,7 +265,7 @@ def derive(kind: Kind) -> Derivation:
         # Variation of parameters: Ȧ cos ω_i t + Ḃ sin ω_i t = 0 and ω_i(−Ȧ sin ω_i t + Ḃ cos ω_i t) = forcing.
         cosine, sine = _cos(_FAST[i]), _sin(_FAST[i])
         rates = sp.Matrix([[cosine, -sine], [sine, cosine]]) * sp.Matrix([0, 1]) / OMEGA[i]
-        exact = [sp.expand(rate * tuned) for rate in rates]
+        exact = [_product(sp.expand(rate), tuned) for rate in rates]
         variation[i] = (_real_form(exact[0]), _real_form(exact[1]))
         averaged[i] = (_mean(exact[0], coordinates), _mean(exact[1], coordinates))
 
