@@ -1,0 +1,98 @@
+"""What a shaper leaves of the face-gear flank that it generates, by brute force.
+
+The shaper is a solid: involute teeth on a tip circle, all round, between two end planes. A point of the face gear is
+carried through the whole motion in small steps and held against that solid at each of them; nothing is solved for but
+the deepest instant, by sampling finer and finer about it. The flank itself comes from the motion alone: the position
+along the shaper at which a profile point generates is where the motion, differentiated by a complex step, has no
+component along the profile's normal.
+"""
+
+import math
+
+import numpy as np
+
+
+class Shaper:
+    """Motion and solid of the shaper of a drive; lengths in metres."""
+
+    def __init__(self, drive, ends, turns=1501):
+        self.teeth, self.ratio = drive.pinion_teeth, drive.pinion_teeth / drive.gear_teeth
+        self.tilt = math.pi - drive.shaft_angle
+        pitch_radius = 0.5 * drive.module * drive.pinion_teeth
+        self.base = pitch_radius * math.cos(drive.pressure_angle)
+        self.tip = pitch_radius + 1.25 * drive.module
+        self.half_space = (
+            math.pi / (2 * self.teeth) - math.tan(drive.pressure_angle) + drive.pressure_angle
+        )
+        self.ends = ends
+        self.turns = np.linspace(-2.2, 2.2, turns)
+
+    def profile(self, roll):
+        """Point (x, y) of the flank: the string unwound from the base circle."""
+        angle = self.half_space + roll
+        x = np.sin(angle) - roll * np.cos(angle)
+        return self.base * x, -self.base * (np.cos(angle) + roll * np.sin(angle))
+
+    def to_gear(self, x, y, z, turn):
+        """From the shaper's frame to the face gear's when the shaper has turned by φs."""
+        c, s = np.cos(turn), np.sin(turn)
+        x, y = c * x - s * y, s * x + c * y
+        c, s = math.cos(self.tilt), math.sin(self.tilt)
+        y, z = c * y - s * z, s * y + c * z
+        c, s = np.cos(self.ratio * turn), np.sin(self.ratio * turn)
+        return c * x + s * y, -s * x + c * y, z
+
+    def to_shaper(self, x, y, z, turn):
+        """Back from the face gear's frame to the shaper's."""
+        c, s = np.cos(self.ratio * turn), np.sin(self.ratio * turn)
+        x, y = c * x - s * y, s * x + c * y
+        c, s = math.cos(self.tilt), math.sin(self.tilt)
+        y, z = c * y + s * z, -s * y + c * z
+        c, s = np.cos(turn), np.sin(turn)
+        return c * x + s * y, -s * x + c * y, z
+
+    def generated(self, roll, turn):
+        """Point that a profile point generates at a rotation, in the gear's frame, and its position u."""
+        roll, turn = np.broadcast_arrays(roll, turn)
+        x, y = self.profile(roll)
+        normal = np.cos(self.half_space + roll), np.sin(self.half_space + roll), np.zeros(roll.shape)
+
+        def slip(u):
+            motion = self.to_gear(x, y, np.full(roll.shape, u), turn + 1e-30j)
+            carried = self.to_gear(*normal, turn)
+            return sum(np.imag(a) * 1e30 * b for a, b in zip(motion, carried, strict=True))
+
+        at_0, at_1 = slip(0.0), slip(1.0)
+        u = at_0 / (at_0 - at_1)
+        return (*self.to_gear(x, y, u, turn), u)
+
+    def depth(self, x, y, z, turn):
+        """Distance by which a point lies inside the solid, at most; negative outside."""
+        x, y, z = self.to_shaper(x, y, z, turn)
+        radius = np.hypot(x, y)
+        roll = np.sqrt(np.maximum((radius / self.base) ** 2 - 1.0, 0.0))
+        pitch = 2 * math.pi / self.teeth
+        from_space = np.abs((np.arctan2(x, -y) + pitch / 2) % pitch - pitch / 2)
+        flank = self.base * (from_space - self.half_space - roll + np.arctan(roll))
+        return np.min([flank, self.tip - radius, z - self.ends[0], self.ends[1] - z], axis=0)
+
+    def deepest(self, x, y, z, generated_at):
+        """Greatest depth over the motion but for the instants about the generation of each point."""
+        turns = self.turns
+        shape, points = np.shape(x), [np.ravel(v)[:, None] for v in (x, y, z)]
+        own = np.ravel(generated_at)[:, None]
+        step, best = turns[1] - turns[0], np.full(own.size, -np.inf)
+        depths = self.depth(*points, own + turns)
+        # Every local maximum is looked at: a narrow one may be the deepest.
+        inner = (depths[:, 1:-1] >= depths[:, :-2]) & (depths[:, 1:-1] >= depths[:, 2:])
+        which, k = np.nonzero(inner & (np.abs(turns[1:-1]) > 2 * step) & (depths[:, 1:-1] > -0.05 * self.base))
+        if which.size:
+            centre, width = turns[k + 1], step
+            few = [p[which] for p in points]
+            for _ in range(5):
+                near = centre[:, None] + width * np.linspace(-1.0, 1.0, 33)
+                local = self.depth(*few, own[which] + near)
+                j = local.argmax(axis=1)
+                centre, width = near[np.arange(which.size), j], width / 16
+            np.maximum.at(best, which, local.max(axis=1))
+        return best.reshape(shape)
