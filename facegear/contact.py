@@ -272,7 +272,9 @@ class ContactRegion:
             changes.append(self.base_circle)
         if self._inner_edge_in_reach:
             roll = self.top_roll(self.inner_radius)
-            changes.append(self.edge_angle(self.inner_radius, roll) - roll)
+            corner = self.edge_angle(self.inner_radius, roll) - roll
+            if self._clear_when_generated(corner):
+                changes.append(corner)
         elif self.tooth_top_distance < self.base_radius:
             # Neither tooth top nor inner edge is reached: lines that began on the base circle then do at α = 0.
             changes.append(0.0)
@@ -312,6 +314,11 @@ class ContactRegion:
         """Whether the shaper leaves anything that the pinion touches: if so, what it touches last."""
         return not self._gone(np.array([self.entry - _FIRST * (self.entry - self._generated_exit)]))[0]
 
+    @property
+    def is_cut(self) -> bool:
+        """Whether the shaper shortens contact lines."""
+        return bool(np.any(self._cut.shortened))
+
     def _gone(self, c: FloatArray) -> NDArray[np.bool_]:
         """Which contact lines the shaper has taken away whole."""
         _, upper = self._generated_ends(c)
@@ -350,6 +357,10 @@ class ContactRegion:
         parts = self._cutting_part(affected)
         kinks += [self._change(affected[k], affected[k + 1]) for k in np.flatnonzero(np.diff(parts))]
         return tuple(kinks)
+
+    def _clear_when_generated(self, c: float) -> bool:
+        """Whether the lower end of a line on the flank as (3-8) leaves it is there in the end."""
+        return not self._cut.may_shorten(np.asarray(c)) or self._clear(c, end=0) >= 0.0
 
     def _clear(self, c: float, end: int) -> float:
         """Clearance of the lower (0) or upper (1) end of one contact line on the flank as (3-8) leaves it [rad]."""
@@ -417,9 +428,9 @@ class ContactRegion:
         alpha = self._top_on_base_circle
         if alpha is None or float(self.radial_position(alpha, 0.0)) <= self.inner_radius:
             return None
-        if self._cut.may_shorten(np.asarray(alpha)) and float(self.shaper.clearance(alpha, 0.0)) < 0.0:
+        if not self.exit < alpha < self.entry:
             return None
-        return alpha if self.exit < alpha < self.entry else None
+        return alpha if self._clear_when_generated(alpha) else None
 
     @cached_property
     def _top_on_base_circle(self) -> float | None:

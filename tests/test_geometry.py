@@ -13,6 +13,7 @@ from scipy.integrate import fixed_quad
 from scipy.optimize import brentq
 
 from facegear.geometry import Drive
+from tests.independent.shaper_envelope import shaper_of
 
 CASE_I = Drive(26, 130, 3.175e-3)
 INCH = 25.4e-3
@@ -384,6 +385,8 @@ def brute_force_line(drive, phi):
             middle = 0.5 * (a + b)
             a, b = (middle, b) if allowed(middle) else (a, middle)
         ends.append(a)
+    if drive.shaft_angle > math.pi / 2:
+        ends[0] = shaper_of(drive).cut_end(phi, *ends)
     points = shaper_point(np.linspace(*ends, 40001))
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     share = [np.interp(0.5 * arc[-1], arc, points[:, i]) for i in range(3)]

@@ -7,7 +7,7 @@ import pytest
 
 from facegear import Drive
 from facegear.geometry import SHAPER_OVERHANG
-from tests.independent.shaper_envelope import Shaper
+from tests.independent.shaper_envelope import shaper_of
 
 
 def drive_of(teeth, pressure_deg, shaft_deg):
@@ -46,13 +46,6 @@ some_drives = [*NAMED, *RANDOM[:2], *(pytest.param(drive, marks=pytest.mark.slow
 every_drive = pytest.mark.parametrize("drive", some_drives, ids=label)
 
 
-def shaper_of(drive):
-    """Half a module longer at either end than what generates the flank."""
-    corners = drive.tooth_flank(5, 5).position
-    more = 0.5 * drive.module
-    return Shaper(drive, (corners.min() - more, corners.max() + more))
-
-
 def within(drive, roll, turn, points):
     """Whether points of the generated flank lie on the tooth and within the pinion's reach."""
     x, y, z, _ = points
@@ -89,12 +82,12 @@ def test_points_that_are_cut(drive):
     np.testing.assert_array_equal((clearance < -1e-9)[tooth], (depth > 1e-9)[tooth])
     # Behind the shaper's flank lies what is inside its tooth, by the shortest way out or by a longer one; what is cut
     # very deep may lie deeper in the tooth on the other side.
-    cut = tooth & (depth > 1e-9) & (depth < 0.05 * drive.module)
+    cut = tooth & (depth > 1e-9) & (depth < 0.01 * drive.module)
     assert np.all((-clearance >= depth - 1e-10)[cut])
     reported = drive.tip_undercut(25, 8)
     whole = tooth[:, :8].all(axis=1)
     expected = np.maximum(depth[:, :8], 0.0).max(axis=1)
-    assert np.all((reported >= np.minimum(expected, 0.05 * drive.module) - 1e-10)[whole])
+    assert np.all((reported >= np.minimum(expected, 0.01 * drive.module) - 1e-10)[whole])
     np.testing.assert_array_equal((reported > 1e-9)[whole], (expected > 1e-9)[whole])
 
 

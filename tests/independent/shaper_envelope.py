@@ -89,10 +89,31 @@ class Shaper:
         if which.size:
             centre, width = turns[k + 1], step
             few = [p[which] for p in points]
-            for _ in range(5):
+            for _ in range(9):
                 near = centre[:, None] + width * np.linspace(-1.0, 1.0, 33)
                 local = self.depth(*few, own[which] + near)
                 j = local.argmax(axis=1)
                 centre, width = near[np.arange(which.size), j], width / 16
             np.maximum.at(best, which, local.max(axis=1))
         return best.reshape(shape)
+
+    def cut_end(self, turn, low, high):
+        """Roll angle up to which the shaper takes the lower end of a contact line, by bisection; `low` if none."""
+
+        def cut(roll):
+            points = self.generated(np.array([roll]), np.array([turn]))
+            return self.deepest(*points[:3], np.array([turn]))[0] > 0.0
+
+        if not cut(low):
+            return low
+        for _ in range(45):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if cut(middle) else (low, middle)
+        return high
+
+
+def shaper_of(drive):
+    """Half a module longer at either end than what generates the flank, whose corners are its extremes."""
+    corners = drive.tooth_flank(2, 2).position
+    more = 0.5 * drive.module
+    return Shaper(drive, (corners.min() - more, corners.max() + more))
