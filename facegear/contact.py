@@ -392,14 +392,16 @@ class ContactRegion:
                 return below_top
             return np.minimum(below_top, self.shaper.clearance(alpha, roll))
 
-        ends = [self.edge_angle(radius, roll) for radius in (self.flank_start, self.outer_radius)]
-        alpha = np.linspace(*ends, _LINES)
+        inner, outer = (self.edge_angle(radius, roll) for radius in (self.flank_start, self.outer_radius))
+        alpha = np.linspace(inner, outer, _LINES)
         free = np.flatnonzero(room(alpha) >= 0.0)
         if not free.size:
             return math.nan, math.nan
         first, last = int(free[0]), int(free[-1])
-        inner = alpha[0] if first == 0 else root(lambda x: float(room(x)), alpha[first - 1], alpha[first])
-        outer = alpha[-1] if last == _LINES - 1 else root(lambda x: float(room(x)), alpha[last], alpha[last + 1])
+        inner = inner if first == 0 else root(lambda x: float(room(x)), alpha[first - 1], alpha[first])
+        outer = (
+            alpha[-1] if last == _LINES - 1 else root(lambda x: float(room(x)), alpha[last], alpha[last + 1])
+        )
         return float(self.radial_position(inner, roll)), float(self.radial_position(outer, roll))
 
     def _uncut(self, lower: FloatArray, upper: FloatArray, c: FloatArray) -> FloatArray:

@@ -397,8 +397,8 @@ class Drive:
         not whether the shaper comes back to it. Between shafts at more than 90° its tip does: some micrometres per
         millimetre of module at 5:1, tens at 3:1, and tenths of a millimetre over the whole face at ratios near one
         and 120° (`usable_radii` has what is left). At 90° up to 1.5 µm per millimetre of module are cut, in the
-        innermost few percent of the face, if the gear ratio is below 1.7; below 90° nothing was found. Contact lines and
-        contact ratio of drives at up to 90° leave that trace out.
+        innermost few percent of the face, if the gear ratio is below 1.7; below 90° nothing was found. Contact lines
+        and contact ratio of drives at up to 90° leave that trace out.
 
         Parameters
         ----------

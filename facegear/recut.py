@@ -38,7 +38,11 @@ _FAR = -1.0
 
 
 def _between(
-    zero: Callable[..., FloatArray], step: NDArray[np.int64], before: FloatArray, after: FloatArray, *more: FloatArray
+    zero: Callable[..., FloatArray],
+    step: NDArray[np.int64],
+    before: FloatArray,
+    after: FloatArray,
+    *more: FloatArray,
 ) -> FloatArray:
     """Roots between neighbours of `_TURNS`, to the last digit.
 

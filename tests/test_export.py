@@ -9,15 +9,13 @@ import pytest
 
 from facegear import Drive
 from facegear.export import (
-    LEAST_LAND,
     results_directory,
     tooth_surface,
-    volume,
     write_points,
     write_stl,
     write_table,
 )
-from facegear.solids import Mesh
+from facegear.solids import LEAST_LAND, Mesh, volume
 
 DRIVES = {
     "case_1": Drive(26, 130, 3.175e-3),

@@ -21,9 +21,7 @@ class Shaper:
         pitch_radius = 0.5 * drive.module * drive.pinion_teeth
         self.base = pitch_radius * math.cos(drive.pressure_angle)
         self.tip = pitch_radius + 1.25 * drive.module
-        self.half_space = (
-            math.pi / (2 * self.teeth) - math.tan(drive.pressure_angle) + drive.pressure_angle
-        )
+        self.half_space = math.pi / (2 * self.teeth) - math.tan(drive.pressure_angle) + drive.pressure_angle
         self.ends = ends
         self.turns = np.linspace(-2.2, 2.2, turns)
 
@@ -85,7 +83,9 @@ class Shaper:
         depths = self.depth(*points, own + turns)
         # Every local maximum is looked at: a narrow one may be the deepest.
         inner = (depths[:, 1:-1] >= depths[:, :-2]) & (depths[:, 1:-1] >= depths[:, 2:])
-        which, k = np.nonzero(inner & (np.abs(turns[1:-1]) > 2 * step) & (depths[:, 1:-1] > -0.05 * self.base))
+        which, k = np.nonzero(
+            inner & (np.abs(turns[1:-1]) > 2 * step) & (depths[:, 1:-1] > -0.05 * self.base)
+        )
         if which.size:
             centre, width = turns[k + 1], step
             few = [p[which] for p in points]
