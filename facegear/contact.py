@@ -39,7 +39,7 @@ _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 _FIRST = 1e-3
 # Contact lines that are held against the shaper to find where it cuts; pieces into which a search divides an interval,
 # and how short that may be in the end [rad].
-_LINES, _SECTIONS, _SAME = 48, 65, 1e-13
+_LINES, _SECTIONS, _SAME = 48, 17, 1e-11
 
 
 def root(function: Callable[[float], float], lower: float, upper: float) -> float:
@@ -310,6 +310,11 @@ class ContactRegion:
         return self._tip_leaves_top - self.tip_roll
 
     @property
+    def generated_sweep(self) -> float:
+        """Rotation from first to last contact on the flank as (3-8) leaves it [rad]."""
+        return self.entry - self._generated_exit
+
+    @property
     def has_contact_lines(self) -> bool:
         """Whether the shaper leaves anything that the pinion touches: if so, what it touches last."""
         return not self._gone(np.array([self.entry - _FIRST * (self.entry - self._generated_exit)]))[0]
@@ -333,7 +338,7 @@ class ContactRegion:
         if self.shaft_angle <= 0.5 * math.pi:
             return Cut(self._generated_exit, np.empty(0), np.empty(0, dtype=bool))
         c = np.linspace(self._generated_exit, self.entry, _LINES + 1)[:-1]
-        lower, upper = self._generated_ends(c)
+        lower, _ = self._generated_ends(c)
         shortened = self.shaper.clearance(lower, lower - c) < 0.0
         if not np.any(shortened):
             return Cut(self._generated_exit, c, shortened)

@@ -27,9 +27,9 @@ from facegear.parameters import FloatArray
 from facegear.symbolic import meshing
 
 # Rotations since generation between which roots are looked for. None of them is 0, where every point touches.
-_TURNS = np.linspace(-1.5, 1.5, 384)
+_TURNS = np.linspace(-1.5, 1.5, 288)
 # A touch but for rounding [rad].
-_TOUCH = 1e-12
+_TOUCH = 1e-14
 # Kinds of places where a point may lie deepest in a tooth of the shaper: its tip, its ends, its flank.
 _KINDS = (0, 1, 2, 3)
 _TIP, _ENDS = 0, (1, 2)

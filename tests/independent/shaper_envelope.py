@@ -10,6 +10,7 @@ component along the profile's normal.
 import math
 
 import numpy as np
+from scipy.optimize import fsolve
 
 
 class Shaper:
@@ -117,3 +118,48 @@ def shaper_of(drive):
     corners = drive.tooth_flank(2, 2).position
     more = 0.5 * drive.module
     return Shaper(drive, (corners.min() - more, corners.max() + more))
+
+
+def contact_ratio(drive, inner, outer):
+    """Mesh periods from first to last contact on the flank that is left, given R1 and R2 [m].
+
+    For drives whose last contact is at the pinion's tip, inside the outer edge, and whose flank begins at R1.
+    """
+    shaper = Shaper(drive, (-math.inf, math.inf))
+    module, gamma = drive.module, drive.shaft_angle
+    pitch_radius = 0.5 * module * drive.pinion_teeth
+    tip_roll = math.sqrt(((pitch_radius + module) / shaper.base) ** 2 - 1.0)
+    shaper_tip_roll = math.sqrt((shaper.tip / shaper.base) ** 2 - 1.0)
+
+    def place(roll, turn):
+        """Distance along the gear plane in the generating position, height over the tooth top, position u."""
+        x, y, z, u = shaper.generated(roll, turn)
+        c, s = math.cos(shaper.ratio * turn), math.sin(shaper.ratio * turn)
+        depth = -z * math.sin(gamma) - np.hypot(x, y) * math.cos(gamma)
+        return -(s * x + c * y), depth - (pitch_radius - module), u
+
+    def turn_at(radius, roll):
+        start = math.acos(min(1.0, shaper.base / (shaper.ratio * radius))) - shaper.half_space - roll
+        return float(fsolve(lambda t: (place(roll, t[0])[0] - radius) / module, start, xtol=1e-13)[0])
+
+    def top(unknown):
+        out, height, _ = place(*unknown)
+        return (out - outer) / module, height / module
+
+    roll, first = fsolve(top, (0.6 * tip_roll, turn_at(outer, 0.6 * tip_roll)), xtol=1e-13)
+    lowest = place(shaper_tip_roll, turn_at(inner, shaper_tip_roll))[2]
+    more = 0.5 * module
+    shaper.ends = float(lowest) - more, float(place(roll, first)[2]) + more
+
+    def left(turn):
+        x, y, z, _ = shaper.generated(np.array([tip_roll]), np.array([turn]))
+        return shaper.deepest(x, y, z, np.array([turn]))[0] <= 0.0
+
+    low = turn_at(inner, tip_roll)
+    if not left(low):
+        high = low + 0.1
+        assert left(high)
+        for _ in range(45):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if left(middle) else (middle, high)
+    return shaper.teeth * (first - low) / (2 * math.pi)
