@@ -317,7 +317,12 @@ class ContactRegion:
     @property
     def has_contact_lines(self) -> bool:
         """Whether the shaper leaves anything that the pinion touches: if so, what it touches last."""
-        return not self._gone(np.array([self.entry - _FIRST * (self.entry - self._generated_exit)]))[0]
+        return not self._gone(np.array([self._first_line]))[0]
+
+    @property
+    def _first_line(self) -> float:
+        """C of a line so soon after entry that nothing comes before it [rad]."""
+        return self.entry - _FIRST * self.generated_sweep
 
     @property
     def is_cut(self) -> bool:
@@ -337,7 +342,7 @@ class ContactRegion:
         """
         if self.shaft_angle <= 0.5 * math.pi:
             return Cut(self._generated_exit, np.empty(0), np.empty(0, dtype=bool))
-        c = np.linspace(self._generated_exit, self.entry, _LINES + 1)[:-1]
+        c = np.append(np.linspace(self._generated_exit, self.entry, _LINES + 1)[:-1], self._first_line)
         lower, _ = self._generated_ends(c)
         shortened = self.shaper.clearance(lower, lower - c) < 0.0
         if not np.any(shortened):
@@ -359,8 +364,12 @@ class ContactRegion:
         affected = c[shortened & (c > self._cut.exit)]
         if not affected.size:
             return tuple(kinks)
-        parts = self._cutting_part(affected)
-        kinks += [self._change(affected[k], affected[k + 1]) for k in np.flatnonzero(np.diff(parts))]
+        starts, parts, turns = self._cutting_parts(affected)
+        for k in np.flatnonzero(np.diff(parts)):
+            c_1, c_2 = float(affected[k]), float(affected[k + 1])
+            both = int(parts[k]), int(parts[k + 1])
+            corner = self.shaper.corner(float(starts[k]), c_1, float(turns[k]), both)
+            kinks.append(corner if c_1 < corner < c_2 else self._change(c_1, c_2))
         return tuple(kinks)
 
     def _clear_when_generated(self, c: float) -> bool:
@@ -372,21 +381,20 @@ class ContactRegion:
         alpha = self._generated_ends(c)[end]
         return float(self.shaper.clearance(alpha, alpha - c))
 
-    def _cutting_part(self, c: FloatArray) -> NDArray[np.int64]:
-        """Part of the shaper that leaves the lower ends of shortened lines where they are, see `Shaper.cut_by`."""
+    def _cutting_parts(self, c: FloatArray) -> tuple[FloatArray, NDArray[np.int64], FloatArray]:
+        """Lower ends of shortened lines, which part of the shaper leaves them there, and at what δ [rad]."""
         lower, upper = self._generated_ends(c)
         start = self._uncut(lower, upper, c)
-        return self.shaper.cut_by(start, start - c)
+        return start, *self.shaper.cut_by(start, start - c)
 
     def _change(self, c_1: float, c_2: float) -> float:
-        """C between two lines at which another part of the shaper takes over [rad]."""
-        before = self._cutting_part(np.array([c_1]))[0]
-        while True:
+        """C between two lines at which another part of the shaper takes over at another instant [rad]."""
+        before = self._cutting_parts(np.array([c_1]))[1][0]
+        while c_2 - c_1 > _SAME:
             c = np.linspace(c_1, c_2, _SECTIONS)
-            same = int(np.argmax(self._cutting_part(c) != before))
+            same = int(np.argmax(self._cutting_parts(c)[1] != before))
             c_1, c_2 = float(c[same - 1]), float(c[same])
-            if c_2 - c_1 < _SAME:
-                return c_2
+        return c_2
 
     def usable_radii(self, roll: float) -> tuple[float, float]:
         """Least and greatest −y_p of the flank that is left on a profile point [m]; NaN where nothing is."""

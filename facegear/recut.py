@@ -15,13 +15,15 @@ tip corner), or where the equation of meshing (3-7) holds once more, u cos(ψ + 
 the angle is stationary. Only these are looked at.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import root as solve
 
 from facegear.parameters import FloatArray
 from facegear.symbolic import meshing
@@ -119,9 +121,12 @@ class Shaper:
             (meshing_again - self._cone_cotangent) / turn,
         )
 
-    def _candidates(self, alpha: FloatArray, roll: FloatArray) -> FloatArray:
-        """Overlap at the deepest place of each of the four kinds, shape (4, points); `_FAR` where there is none."""
-        found = np.full((len(_KINDS), alpha.size), _FAR)
+    def _candidates(self, alpha: FloatArray, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Overlap at the deepest place of each of the four kinds, `_FAR` where there is none, and its δ.
+
+        Shapes (4, points).
+        """
+        found, turns = np.full((len(_KINDS), alpha.size), _FAR), np.zeros((len(_KINDS), alpha.size))
         on_grid = self._zeros(self._place(alpha[:, None], roll[:, None], _TURNS), _TURNS)
         for kind, values in zip(_KINDS, on_grid, strict=True):
             point, step = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
@@ -142,8 +147,10 @@ class Shaper:
             if kind not in _ENDS:
                 inside &= (place.u >= self.ends[0]) & (place.u <= self.ends[1])
             overlap = angle - (place.roll - np.arctan(place.roll))
-            np.maximum.at(found[kind], point[inside], overlap[inside])
-        return found
+            # Of several places of one kind the deepest: it is written last.
+            order = np.flatnonzero(inside)[np.argsort(overlap[inside])]
+            found[kind, point[order]], turns[kind, point[order]] = overlap[order], turn[order]
+        return found, turns
 
     def overlap(self, alpha: ArrayLike, roll: ArrayLike) -> FloatArray:
         """Largest angle by which a point of the flank ever lies inside the shaper's tooth [rad].
@@ -160,12 +167,30 @@ class Shaper:
             generation, at which it is 0, does not count.
         """
         a, r = np.broadcast_arrays(np.asarray(alpha, dtype=float), np.asarray(roll, dtype=float))
-        return np.asarray(self._candidates(a.ravel(), r.ravel()).max(axis=0).reshape(a.shape))
+        return np.asarray(self._candidates(a.ravel(), r.ravel())[0].max(axis=0).reshape(a.shape))
 
     def clearance(self, alpha: ArrayLike, roll: ArrayLike) -> FloatArray:
         """Negative of `overlap`, with a touch but for rounding counted as clear [rad]."""
         return _TOUCH - self.overlap(alpha, roll)
 
-    def cut_by(self, alpha: FloatArray, roll: FloatArray) -> NDArray[np.int64]:
-        """Which part of the shaper comes closest: 0 edge of the tip, 1 and 2 its ends, 3 the flank itself."""
-        return np.asarray(self._candidates(alpha, roll).argmax(axis=0))
+    def cut_by(self, alpha: FloatArray, roll: FloatArray) -> tuple[NDArray[np.int64], FloatArray]:
+        """Which part of the shaper comes closest (0 edge of the tip, 1 and 2 its ends, 3 its flank), and at what δ."""
+        overlap, turns = self._candidates(alpha, roll)
+        part = overlap.argmax(axis=0)
+        return part, turns[part, np.arange(part.size)]
+
+    def corner(self, alpha: float, c: float, turn: float, parts: tuple[int, int]) -> float:
+        """C near the one given at which two parts of the shaper end the cut at the same instant [rad].
+
+        As the tip and an end do in the tip corner. NaN if the search does not settle.
+        """
+
+        def conditions(unknown: FloatArray) -> list[Any]:
+            a, line, delta = unknown
+            place = self._place(a, a - line, delta)
+            zeros = self._zeros(place, delta)
+            overlap = place.angle - line - delta - (place.roll - np.arctan(place.roll))
+            return [overlap, *(zeros[part] for part in parts)]
+
+        found = solve(conditions, [alpha, c, turn], tol=1e-14)
+        return float(found.x[1]) if np.max(np.abs(found.fun)) < 1e-13 else math.nan
