@@ -390,15 +390,15 @@ class Drive:
         first = self._roll_angle(max(self.dedendum_radius, self.base_radius))
         return pinion_flank(self.contact_region, ends, first, along, across, flank)
 
-    def tip_undercut(self, along: int = 41, across: int = 4) -> FloatArray:
+    def tip_undercut(self, along: int = 41, across: int = 16) -> FloatArray:
         """Depth to which the shaper cuts into the flank that it has generated, along the face width [m].
 
         The condition of undercutting (3-8) asks whether a point of the flank is singular where it is generated,
         not whether the shaper comes back to it. Between shafts at more than 90° its tip does: some micrometres per
         millimetre of module at 5:1, tens at 3:1, and tenths of a millimetre over the whole face at ratios near one
-        and 120° (`usable_radii` has what is left). At 90° up to 1.5 µm per millimetre of module are cut, in the
-        innermost few percent of the face, if the gear ratio is below 1.7; below 90° nothing was found. Contact lines
-        and contact ratio of drives at up to 90° leave that trace out.
+        and 120° (`usable_radii` has what is left). At 90° it is a trace, in the innermost few percent of the face and
+        at low gear ratios only: up to 3.3 µm per millimetre of module at a ratio near one, 0.004 at 1.6, nothing from
+        1.7; at 89° nothing is cut. Contact lines and contact ratio of drives at up to 90° leave that trace out.
 
         Parameters
         ----------
@@ -447,7 +447,7 @@ class Drive:
         >>> drive = Drive(26, 130, 3.175e-3, shaft_angle=math.radians(110.0))
         >>> inner, outer = drive.usable_radii(drive.pinion_tip_roll)
         >>> [round(1e3 * float(radius), 2) for radius in (drive.inner_radius, inner, outer)]
-        [187.93, 188.83, 229.1]
+        [187.93, 188.73, 229.1]
         """
         rolls = parameters.finite_array("roll", roll, "rad")
         outside = (rolls < 0.0) | (rolls > self.shaper_tip_roll)

@@ -501,7 +501,9 @@ class AllCut(Drive):
 
 
 def test_no_flank_is_refused():
-    with pytest.raises(ValueError, match=r"shaft_angle=120° leaves no flank of pinion_teeth=10, gear_teeth=11"):
+    with pytest.raises(
+        ValueError, match=r"shaft_angle=120° leaves no flank of pinion_teeth=10, gear_teeth=11"
+    ):
         AllCut(10, 11, 1e-3, math.radians(14.5), math.radians(120.0))
     # The worst there is inside the ranges keeps contact lines for a little more than one mesh period of 2.4.
     least = Drive(10, 11, 1e-3, math.radians(14.5), math.radians(120.0))
