@@ -361,16 +361,41 @@ class ContactRegion:
             root(lambda x: self._clear(x, end=0), c[k], c[k + 1])
             for k in np.flatnonzero(shortened[:-1] != shortened[1:])
         ]
-        affected = c[shortened & (c > self._cut.exit)]
-        if not affected.size:
-            return tuple(kinks)
-        starts, parts, turns = self._cutting_parts(affected)
+        return (*kinks, *self._cut_corners)
+
+    @cached_property
+    def _affected(self) -> tuple[FloatArray, FloatArray, NDArray[np.int64], FloatArray]:
+        """Shortened lines that were looked at, c ascending, with what `_cutting_parts` has of them."""
+        affected = self._cut.lines[self._cut.shortened & (self._cut.lines > self._cut.exit)]
+        return affected, *self._cutting_parts(affected)
+
+    @cached_property
+    def _cut_corners(self) -> tuple[float, ...]:
+        """C at which another part of the shaper takes over, ascending [rad]."""
+        c, starts, parts, turns = self._affected
+        corners = []
         for k in np.flatnonzero(np.diff(parts)):
-            c_1, c_2 = float(affected[k]), float(affected[k + 1])
             both = int(parts[k]), int(parts[k + 1])
-            corner = self.shaper.corner(float(starts[k]), c_1, float(turns[k]), both)
-            kinks.append(corner if c_1 < corner < c_2 else self._change(c_1, c_2))
-        return tuple(kinks)
+            corner = self.shaper.corner(float(starts[k]), float(c[k]), float(turns[k]), both)
+            inside = c[k] < corner < c[k + 1]
+            corners.append(corner if inside else self._change(float(c[k]), float(c[k + 1])))
+        return tuple(corners)
+
+    def _shortened(self, lower: FloatArray, upper: FloatArray, c: FloatArray) -> FloatArray:
+        """Where lines begin that may be shortened: followed from the nearest line that was looked at [rad]."""
+        known, starts, parts, turns = self._affected
+        start = np.full(c.shape, np.nan)
+        if known.size:
+            # Not past a corner, beyond which another part of the shaper ends the cut.
+            nearest = np.abs(c[:, None] - known)
+            corners = np.array(self._cut_corners)
+            apart = np.searchsorted(corners, c)[:, None] != np.searchsorted(corners, known)
+            k = np.argmin(np.where(apart, np.inf, nearest), axis=1)
+            start = self.shaper.edge(c, starts[k], turns[k], parts[k])
+        # Where there is nothing to start from, where that fails, or where the end is not cut: by search.
+        search = ~((start > lower) & (start < upper))
+        start[search] = self._uncut(lower[search], upper[search], c[search])
+        return start
 
     def _clear_when_generated(self, c: float) -> bool:
         """Whether the lower end of a line on the flank as (3-8) leaves it is there in the end."""
@@ -486,7 +511,7 @@ class ContactRegion:
         lower, upper = self._generated_ends(offset)
         shortened = self._cut.may_shorten(offset)
         if np.any(shortened):
-            lower[shortened] = self._uncut(lower[shortened], upper[shortened], offset[shortened])
+            lower[shortened] = self._shortened(lower[shortened], upper[shortened], offset[shortened])
         return lower, upper
 
     def _generated_ends(self, c: ArrayLike) -> tuple[FloatArray, FloatArray]:

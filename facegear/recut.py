@@ -30,6 +30,8 @@ from facegear.symbolic import meshing
 
 # Rotations since generation between which roots are looked for. None of them is 0, where every point touches.
 _TURNS = np.linspace(-1.5, 1.5, 288)
+# Steps of Newton's rule from a neighbour, and how far one may go [rad].
+_NEWTON, _STRIDE = 8, 0.05
 # A touch but for rounding [rad].
 _TOUCH = 1e-14
 # Kinds of places where a point may lie deepest in a tooth of the shaper: its tip, its ends, its flank.
@@ -179,6 +181,36 @@ class Shaper:
         part = overlap.argmax(axis=0)
         return part, turns[part, np.arange(part.size)]
 
+    def _conditions(self, alpha: Any, c: Any, turn: Any) -> tuple[Any, tuple[FloatArray, ...]]:
+        """Overlap at a rotation δ, less a touch, and the four functions that vanish where it may be largest."""
+        place = self._place(alpha, alpha - c, turn)
+        overlap = place.angle - c - turn - (place.roll - np.arctan(place.roll))
+        return overlap - _TOUCH, self._zeros(place, turn)
+
+    def edge(self, c: FloatArray, alpha: FloatArray, turn: FloatArray, part: NDArray[np.int64]) -> FloatArray:
+        """Local pressure angles at which given parts of the shaper end the cut of contact lines [rad].
+
+        By Newton's rule in α and δ, from values that hold nearby; NaN where it does not settle.
+        """
+
+        def residual(a: FloatArray, delta: FloatArray) -> FloatArray:
+            overlap, zeros = self._conditions(a, c, delta)
+            return np.stack([overlap, np.choose(part, zeros)])
+
+        a, delta, h = alpha.copy(), turn.copy(), 1e-6
+        for _ in range(_NEWTON):
+            by_alpha = (residual(a + h, delta) - residual(a - h, delta)) / (2.0 * h)
+            by_turn = (residual(a, delta + h) - residual(a, delta - h)) / (2.0 * h)
+            now = residual(a, delta)
+            determinant = by_alpha[0] * by_turn[1] - by_alpha[1] * by_turn[0]
+            determinant = np.where(determinant == 0.0, 1.0, determinant)
+            step = (now[0] * by_turn[1] - now[1] * by_turn[0]) / determinant
+            a = a - np.clip(step, -_STRIDE, _STRIDE)
+            step = (by_alpha[0] * now[1] - by_alpha[1] * now[0]) / determinant
+            delta = delta - np.clip(step, -_STRIDE, _STRIDE)
+        settled = np.all(np.abs(residual(a, delta)) < 10.0 * _TOUCH, axis=0)
+        return np.where(settled, a, np.nan)
+
     def corner(self, alpha: float, c: float, turn: float, parts: tuple[int, int]) -> float:
         """C near the one given at which two parts of the shaper end the cut at the same instant [rad].
 
@@ -186,10 +218,7 @@ class Shaper:
         """
 
         def conditions(unknown: FloatArray) -> list[Any]:
-            a, line, delta = unknown
-            place = self._place(a, a - line, delta)
-            zeros = self._zeros(place, delta)
-            overlap = place.angle - line - delta - (place.roll - np.arctan(place.roll))
+            overlap, zeros = self._conditions(*unknown)
             return [overlap, *(zeros[part] for part in parts)]
 
         found = solve(conditions, [alpha, c, turn], tol=1e-14)
