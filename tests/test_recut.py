@@ -137,6 +137,15 @@ def test_contact_ends_where_the_shaper_leaves_nothing(drive):
     assert drive.geometric_contact_ratio == pytest.approx(ratio, abs=1e-5)
 
 
+@pytest.mark.parametrize("drive", NAMED, ids=label)
+def test_ends_followed_from_neighbours_are_those_found_by_search(drive):
+    region = drive.contact_region
+    c = np.linspace(region.exit, region.entry, 41)[1:-1]
+    lower, upper = region._generated_ends(c)
+    found = np.maximum(lower, region._uncut(lower, upper, c))
+    np.testing.assert_allclose(region.line_ends(c)[0], found, rtol=0, atol=2e-12)
+
+
 def test_what_the_issue_measured():
     """Lines on removed flank were counted: 3.23 mesh periods for 2.70."""
     drive = NAMED[3]
@@ -175,9 +184,9 @@ def test_up_to_a_right_angle_lines_are_as_generated():
     """What is cut at 90° is a trace, at low gear ratios; below, nothing."""
     for teeth, shaft_deg, most in (((26, 30), 90.0, 1.5e-6), ((26, 52), 90.0, 0.0), ((26, 30), 80.0, 0.0)):
         drive = drive_of(teeth, 25.0, shaft_deg)
-        assert drive.tip_undercut(101, 16).max() <= most
+        assert drive.tip_undercut(41, 16).max() <= most
         assert drive.contact_region.exit == drive.contact_region._generated_exit
-    assert drive_of((26, 30), 25.0, 90.0).tip_undercut(101, 16).max() > 0.5e-6
+    assert drive_of((26, 30), 25.0, 90.0).tip_undercut(41, 16).max() > 0.5e-6
 
 
 def test_roll_off_the_profile_is_refused():
