@@ -89,7 +89,7 @@ def valid_drives(draw):
         return DRIVE
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(drive=valid_drives())
 def test_any_drive_gives_a_closed_tooth_turned_outwards_or_says_why_not(drive, tmp_path_factory):
     try:
