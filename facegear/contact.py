@@ -11,6 +11,8 @@ plane, with c = φs + θ0s. It lies between three edges of the face-gear tooth a
   parallel to the shaper's axis, one addendum short of the pitch radius away. For γ = 90° it is the plane
   at that distance below the shaper's axis;
 - tip circle of the pinion θs = θa, and its base circle θs = 0, below which there is no involute.
+
+Where the shaper cuts into the flank once more (`facegear.recut`), the line begins where that cut ends.
 """
 
 import math
@@ -20,11 +22,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 
 from facegear.parameters import FloatArray
+from facegear.recut import Shaper
 from facegear.symbolic import meshing
 
 # No flank reaches a local pressure angle near 90°: u_s would be infinite there.
@@ -32,6 +35,11 @@ _STEEPEST = 1.5
 # Gauss–Legendre on [0, 1]: 24 nodes leave nothing of a smooth integrand over a fraction of a radian.
 _NODES, _WEIGHTS = (array.astype(np.float64) for array in np.polynomial.legendre.leggauss(24))
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
+# How soon after entry a line is looked at to know whether there are any.
+_FIRST = 1e-3
+# Contact lines that are held against the shaper to find where it cuts; pieces into which a search divides an interval,
+# and how short that may be in the end [rad].
+_LINES, _SECTIONS, _SAME = 48, 17, 1e-11
 
 
 def root(function: Callable[[float], float], lower: float, upper: float) -> float:
@@ -60,6 +68,31 @@ def crossing(
     return result
 
 
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """What the shaper takes of the contact lines.
+
+    Parameters
+    ----------
+    exit : float
+        C of the last contact that is left [rad].
+    lines : ndarray, shape (n,)
+        C of lines that were looked at, ascending [rad].
+    shortened : ndarray of bool, shape (n,)
+        Which of them lose their lower end.
+    """
+
+    exit: float
+    lines: FloatArray
+    shortened: NDArray[np.bool_]
+
+    def may_shorten(self, c: FloatArray) -> NDArray[np.bool_]:
+        """Which lines lie below one that is shortened, or next above it."""
+        last = int(np.flatnonzero(self.shortened)[-1]) + 1 if np.any(self.shortened) else -1
+        bound = -math.inf if last < 0 else math.inf if last == self.lines.size else self.lines[last]
+        return np.asarray(c < bound)
+
+
 @dataclass(frozen=True)
 class ContactRegion:
     """The part of the (α, θs) plane where pinion and face-gear tooth touch during a mesh cycle.
@@ -82,6 +115,10 @@ class ContactRegion:
         θ_a, roll angle at the pinion's tip circle [rad].
     shaper_tip_roll : float
         θ_s*, roll angle at the shaper's tip circle [rad].
+    pitch : float
+        Angular pitch 2π/Ns of pinion and shaper [rad].
+    overhang : float
+        By how much the shaper is longer at either end than the part of it that generates the flank [m].
     """
 
     base_radius: float
@@ -93,6 +130,8 @@ class ContactRegion:
     tooth_top_distance: float
     tip_roll: float
     shaper_tip_roll: float
+    pitch: float
+    overhang: float
 
     # --- one point ---------------------------------------------------------------------------------------
 
@@ -220,25 +259,196 @@ class ContactRegion:
     def exit(self) -> float:
         """C = φ_out + θ0s, last contact [rad].
 
-        The pinion's tip leaves at the inner edge, or, with many teeth, where it leaves the tooth top before.
+        The pinion's tip leaves at the inner edge, or, with many teeth, where it leaves the tooth top before, or where
+        it comes to the part that the shaper has cut off.
         """
-        if self._inner_edge_in_reach:
-            return self.edge_angle(self.inner_radius, self.tip_roll) - self.tip_roll
-        return self._tip_leaves_top - self.tip_roll
+        return self._cut.exit
 
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """C between entry and exit where an end of the contact line changes edge, descending [rad]."""
-        changes = [self.edge_angle(self.outer_radius, self.tip_roll) - self.tip_roll]
+        changes = [self.edge_angle(self.outer_radius, self.tip_roll) - self.tip_roll, *self._cut_kinks]
         if self.base_circle is not None:
             changes.append(self.base_circle)
         if self._inner_edge_in_reach:
             roll = self.top_roll(self.inner_radius)
-            changes.append(self.edge_angle(self.inner_radius, roll) - roll)
+            corner = self.edge_angle(self.inner_radius, roll) - roll
+            if self._clear_when_generated(corner):
+                changes.append(corner)
         elif self.tooth_top_distance < self.base_radius:
             # Neither tooth top nor inner edge is reached: lines that began on the base circle then do at α = 0.
             changes.append(0.0)
         return tuple(sorted((c for c in changes if self.exit < c < self.entry), reverse=True))
+
+    # --- what the shaper cuts off ----------------------------------------------------------------------------
+
+    @cached_property
+    def shaper(self) -> Shaper:
+        """Shaper of the stated length: all that generates the flank, and `overhang` more at either end."""
+        inner = [
+            self.edge_angle(self.flank_start, roll)
+            for roll in (self.shaper_tip_roll, self.top_roll(self.flank_start))
+        ]
+        outer = self.edge_angle(self.outer_radius, self.top_roll(self.outer_radius))
+        return Shaper(
+            base_radius=self.base_radius,
+            tip_radius=self.base_radius * math.hypot(1.0, self.shaper_tip_roll),
+            pitch=self.pitch,
+            gear_ratio=self.gear_ratio,
+            shaft_angle=self.shaft_angle,
+            ends=(
+                float(self.position(min(inner))) - self.overhang,
+                float(self.position(outer)) + self.overhang,
+            ),
+        )
+
+    @cached_property
+    def _generated_exit(self) -> float:
+        """C of the last contact on the flank as (3-8) leaves it [rad]."""
+        if self._inner_edge_in_reach:
+            return self.edge_angle(self.inner_radius, self.tip_roll) - self.tip_roll
+        return self._tip_leaves_top - self.tip_roll
+
+    @property
+    def generated_sweep(self) -> float:
+        """Rotation from first to last contact on the flank as (3-8) leaves it [rad]."""
+        return self.entry - self._generated_exit
+
+    @property
+    def has_contact_lines(self) -> bool:
+        """Whether the shaper leaves anything that the pinion touches: if so, what it touches last."""
+        return not self._gone(np.array([self._first_line]))[0]
+
+    @property
+    def _first_line(self) -> float:
+        """C of a line so soon after entry that nothing comes before it [rad]."""
+        return self.entry - _FIRST * self.generated_sweep
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether the shaper shortens contact lines."""
+        return bool(np.any(self._cut.shortened))
+
+    def _gone(self, c: FloatArray) -> NDArray[np.bool_]:
+        """Which contact lines the shaper has taken away whole."""
+        _, upper = self._generated_ends(c)
+        return np.asarray(self.shaper.clearance(upper, upper - c) < 0.0)
+
+    @cached_property
+    def _cut(self) -> Cut:
+        """Which contact lines the shaper shortens, and which it takes away.
+
+        Between shafts at up to 90° none: see `Drive.tip_undercut` for the trace that is neglected there.
+        """
+        if self.shaft_angle <= 0.5 * math.pi:
+            return Cut(self._generated_exit, np.empty(0), np.empty(0, dtype=bool))
+        c = np.append(np.linspace(self._generated_exit, self.entry, _LINES + 1)[:-1], self._first_line)
+        lower, _ = self._generated_ends(c)
+        shortened = self.shaper.clearance(lower, lower - c) < 0.0
+        if not np.any(shortened):
+            return Cut(self._generated_exit, c, shortened)
+        gone = self._gone(c)
+        if not np.any(gone):
+            return Cut(self._generated_exit, c, shortened)
+        k = int(np.flatnonzero(gone)[-1])
+        return Cut(root(lambda x: self._clear(x, end=1), c[k], c[k + 1]), c, shortened)
+
+    @cached_property
+    def _cut_kinks(self) -> tuple[float, ...]:
+        """C at which the shaper begins or ceases to shorten lines, or another part of it does so [rad]."""
+        c, shortened = self._cut.lines, self._cut.shortened
+        kinks = [
+            root(lambda x: self._clear(x, end=0), c[k], c[k + 1])
+            for k in np.flatnonzero(shortened[:-1] != shortened[1:])
+        ]
+        return (*kinks, *self._cut_corners)
+
+    @cached_property
+    def _affected(self) -> tuple[FloatArray, FloatArray, NDArray[np.int64], FloatArray]:
+        """Shortened lines that were looked at, c ascending, with what `_cutting_parts` has of them."""
+        affected = self._cut.lines[self._cut.shortened & (self._cut.lines > self._cut.exit)]
+        return affected, *self._cutting_parts(affected)
+
+    @cached_property
+    def _cut_corners(self) -> tuple[float, ...]:
+        """C at which another part of the shaper takes over, ascending [rad]."""
+        c, starts, parts, turns = self._affected
+        corners = []
+        for k in np.flatnonzero(np.diff(parts)):
+            both = int(parts[k]), int(parts[k + 1])
+            corner = self.shaper.corner(float(starts[k]), float(c[k]), float(turns[k]), both)
+            inside = c[k] < corner < c[k + 1]
+            corners.append(corner if inside else self._change(float(c[k]), float(c[k + 1])))
+        return tuple(corners)
+
+    def _shortened(self, lower: FloatArray, upper: FloatArray, c: FloatArray) -> FloatArray:
+        """Where lines begin that may be shortened: followed from the nearest line that was looked at [rad]."""
+        known, starts, parts, turns = self._affected
+        start = np.full(c.shape, np.nan)
+        if known.size:
+            # Not past a corner, beyond which another part of the shaper ends the cut.
+            nearest = np.abs(c[:, None] - known)
+            corners = np.array(self._cut_corners)
+            apart = np.searchsorted(corners, c)[:, None] != np.searchsorted(corners, known)
+            k = np.argmin(np.where(apart, np.inf, nearest), axis=1)
+            start = self.shaper.edge(c, starts[k], turns[k], parts[k])
+        # Where there is nothing to start from, where that fails, or where the end is not cut: by search.
+        search = ~((start > lower) & (start < upper))
+        start[search] = self._uncut(lower[search], upper[search], c[search])
+        return start
+
+    def _clear_when_generated(self, c: float) -> bool:
+        """Whether the lower end of a line on the flank as (3-8) leaves it is there in the end."""
+        return not self._cut.may_shorten(np.asarray(c)) or self._clear(c, end=0) >= 0.0
+
+    def _clear(self, c: float, end: int) -> float:
+        """Clearance of the lower (0) or upper (1) end of one contact line on the flank as (3-8) leaves it [rad]."""
+        alpha = self._generated_ends(c)[end]
+        return float(self.shaper.clearance(alpha, alpha - c))
+
+    def _cutting_parts(self, c: FloatArray) -> tuple[FloatArray, NDArray[np.int64], FloatArray]:
+        """Lower ends of shortened lines, which part of the shaper leaves them there, and at what δ [rad]."""
+        lower, upper = self._generated_ends(c)
+        start = self._uncut(lower, upper, c)
+        return start, *self.shaper.cut_by(start, start - c)
+
+    def _change(self, c_1: float, c_2: float) -> float:
+        """C between two lines at which another part of the shaper takes over at another instant [rad]."""
+        before = self._cutting_parts(np.array([c_1]))[1][0]
+        while c_2 - c_1 > _SAME:
+            c = np.linspace(c_1, c_2, _SECTIONS)
+            same = int(np.argmax(self._cutting_parts(c)[1] != before))
+            c_1, c_2 = float(c[same - 1]), float(c[same])
+        return c_2
+
+    def usable_radii(self, roll: float) -> tuple[float, float]:
+        """Least and greatest −y_p of the flank that is left on a profile point [m]; NaN where nothing is."""
+
+        def room(alpha: ArrayLike) -> Any:
+            below_top = self.depth(alpha, roll) / self.tooth_top_distance - 1.0
+            if self.shaft_angle <= 0.5 * math.pi:
+                return below_top
+            return np.minimum(below_top, self.shaper.clearance(alpha, roll))
+
+        inner, outer = (self.edge_angle(radius, roll) for radius in (self.flank_start, self.outer_radius))
+        alpha = np.linspace(inner, outer, _LINES)
+        free = np.flatnonzero(room(alpha) >= 0.0)
+        if not free.size:
+            return math.nan, math.nan
+        first, last = int(free[0]), int(free[-1])
+        inner = inner if first == 0 else root(lambda x: float(room(x)), alpha[first - 1], alpha[first])
+        outer = (
+            alpha[-1] if last == _LINES - 1 else root(lambda x: float(room(x)), alpha[last], alpha[last + 1])
+        )
+        return float(self.radial_position(inner, roll)), float(self.radial_position(outer, roll))
+
+    def _uncut(self, lower: FloatArray, upper: FloatArray, c: FloatArray) -> FloatArray:
+        """Where lines begin that the shaper has shortened: it takes the lower end of a line, if any."""
+
+        def clearance(alpha: FloatArray, line: FloatArray) -> FloatArray:
+            return self.shaper.clearance(alpha, alpha - line)
+
+        return crossing(clearance, lower, upper, c)
 
     @cached_property
     def base_circle(self) -> float | None:
@@ -258,7 +468,9 @@ class ContactRegion:
         alpha = self._top_on_base_circle
         if alpha is None or float(self.radial_position(alpha, 0.0)) <= self.inner_radius:
             return None
-        return alpha if self.exit < alpha < self.entry else None
+        if not self.exit < alpha < self.entry:
+            return None
+        return alpha if self._clear_when_generated(alpha) else None
 
     @cached_property
     def _top_on_base_circle(self) -> float | None:
@@ -295,6 +507,15 @@ class ContactRegion:
 
         Along a line −y_p and the depth both grow with α, so that every edge cuts off one end.
         """
+        offset = np.asarray(c, dtype=np.float64)
+        lower, upper = self._generated_ends(offset)
+        shortened = self._cut.may_shorten(offset)
+        if np.any(shortened):
+            lower[shortened] = self._shortened(lower[shortened], upper[shortened], offset[shortened])
+        return lower, upper
+
+    def _generated_ends(self, c: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Local pressure angles at the ends of lines on the flank as (3-8) leaves it, see `line_ends` [rad]."""
         offset = np.asarray(c, dtype=np.float64)
         tip = offset + self.tip_roll
         # α < 0 is the branch of the meshing surface beyond the undercut.

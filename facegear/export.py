@@ -10,102 +10,17 @@ import csv
 import re
 import unicodedata
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
-from facegear.contact import ContactRegion
 from facegear.files import written_whole
-from facegear.flanks import shaper_points, shaper_to_gear
-from facegear.geometry import Drive
-from facegear.parameters import FloatArray, integer_at_least
-from facegear.solids import Mesh, tooth_between
-from facegear.symbolic import meshing
+from facegear.solids import Mesh, ToothSurface, tooth_surface
 
-LEAST_LAND = 2e-6
-"""Narrowest top land of an exported tooth [m].
+__all__ = ["results_directory", "tooth_surface", "write_points", "write_stl", "write_table"]
 
-Near R2 the true flanks may cross just below the nominal top (see :meth:`Drive.top_thickness`). There the tooth ends
-where it is this thick: a knife edge is no solid.
-"""
 _MM = 1e3
-
-
-@dataclass(frozen=True, eq=False)
-class ToothSurface:
-    """Points of both flanks of a tooth with their normals, in Γ2.
-
-    Attributes
-    ----------
-    points, normals : ndarray, shape (2, along, across, 3)
-        Coordinates [m] and unit vectors that point out of the tooth; first the flank that the equations of chapter 3
-        describe, then its mirror image. The second index runs outwards to R2, the third from top to bottom.
-    """
-
-    points: FloatArray
-    normals: FloatArray
-
-    def solid(self) -> Mesh:
-        """Tooth between the flanks, closed, its triangles counter-clockwise seen from outside."""
-        mesh = tooth_between(self.points[0], self.points[1])
-        return mesh if volume(mesh) > 0.0 else Mesh(mesh.vertices, mesh.triangles[:, ::-1])
-
-
-def tooth_surface(drive: Drive, along: int = 33, across: int = 17) -> ToothSurface:
-    """Lay a grid on both flanks of a face-gear tooth, from its top to where the shaper's tip generates it.
-
-    Parameters
-    ----------
-    drive : Drive
-    along, across : int
-        Points along the face width and across the profile of each flank, at least 2.
-
-    Raises
-    ------
-    TypeError, ValueError
-        A number of points that is no integer of at least 2.
-
-    Notes
-    -----
-    R1 is where undercutting ends (3-8). Between shafts at more than 90° the corner of the shaper's tip comes back on
-    its way out and shaves some micrometres off the first few percent of the face width; that is left out here.
-    """
-    n, k = integer_at_least("along", along, 2), integer_at_least("across", across, 2)
-    region = drive.contact_region
-    fraction = np.linspace(0.0, 1.0, k)
-    parts = [
-        _line(region, float(r), fraction) for r in np.linspace(region.flank_start, region.outer_radius, n)
-    ]
-    points, normals = (np.stack([part[i] for part in parts]) for i in range(2))
-    mirror = np.array([-1.0, 1.0, 1.0])
-    return ToothSurface(np.stack([points, points * mirror]), np.stack([normals, normals * mirror]))
-
-
-def _line(region: ContactRegion, radius: float, fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Points and normals of one profile of the flank, from the top, or where it is thick enough, to the bottom."""
-
-    def points(roll: FloatArray) -> tuple[FloatArray, FloatArray]:
-        alpha = np.array([region.edge_angle(radius, value) for value in roll])
-        rotation = alpha - roll - region.space_half_angle
-        generating = shaper_points(region, region.position(alpha), roll)
-        return shaper_to_gear(region, generating, rotation), rotation
-
-    def half_land(roll: float) -> float:
-        return float(points(np.array([roll]))[0][0, 0]) - LEAST_LAND / 2.0
-
-    top, bottom = region.top_roll(radius), region.shaper_tip_roll
-    if half_land(top) < 0.0:
-        top = float(brentq(half_land, top, bottom, xtol=1e-14))
-    roll = top + (bottom - top) * fraction
-    place, rotation = points(roll)
-    s = meshing
-    normal = s.compiled(s.shaper_normal, s.theta_s, s.theta_0s)(roll, region.space_half_angle)
-    turned = shaper_to_gear(region, np.stack(np.broadcast_arrays(*normal), axis=-1), rotation)
-    # (3-3) points out of the shaper's tooth space, that is into the tooth.
-    return place, -turned / np.linalg.norm(turned, axis=-1, keepdims=True)
 
 
 def results_directory(
@@ -138,12 +53,6 @@ def results_directory(
     if Path(data_directory, "drives").is_dir():
         return Path(build_directory, "drives", name)
     return Path(f"{name}_results")
-
-
-def volume(mesh: Mesh) -> float:
-    """Volume of a closed mesh, positive if its triangles are counter-clockwise seen from outside [m³]."""
-    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
 
 
 def write_stl(mesh: Mesh, path: str | Path, title: str) -> Path:

@@ -18,9 +18,6 @@ from facegear.contact import ContactRegion
 from facegear.parameters import FloatArray
 from facegear.symbolic import meshing
 
-# Rotations at which the shaper is held against the flank, and the gap that is a touch but for rounding [m].
-_TURNS, _TOUCH = 2001, 1e-10
-
 
 def _mirror(flank: int) -> FloatArray:
     if isinstance(flank, bool) or flank not in (1, -1):
@@ -141,19 +138,13 @@ def tooth_flank(region: ContactRegion, along: int, across: int, flank: int) -> T
 
 def tip_undercut(region: ContactRegion, along: int, across: int) -> FloatArray:
     """Depth to which the shaper cuts into the flank that it has generated [m], see `Drive.tip_undercut`."""
+    flank = tooth_flank(region, along, across + 1, 1)
     # The lowest row is made by the corner of the shaper's tip itself.
-    points = tooth_flank(region, along, across + 1, 1).points[:, :-1]
-    tip = region.base_radius * math.hypot(1.0, region.shaper_tip_roll)
-    deepest = np.zeros(along)
-    for turn in np.linspace(-1.0, 1.0, _TURNS):
-        axes = shaper_to_gear(region, np.eye(3), turn)
-        x, y, _ = np.moveaxis(points @ axes.T, -1, 0)
-        radius = np.hypot(x, y)
-        roll = np.sqrt(np.maximum((radius / region.base_radius) ** 2 - 1.0, 0.0))
-        # From the middle of the tooth space, on −y, to the involute and to the point.
-        gap = radius * (region.space_half_angle + roll - np.arctan(roll) - np.arctan2(x, -y))
-        deepest = np.maximum(deepest, np.where(radius <= tip, -gap, 0.0).max(axis=1))
-    return np.where(deepest > _TOUCH, deepest, 0.0)
+    roll = flank.roll[:, :-1]
+    alpha = flank.rotation[:, :-1] + region.space_half_angle + roll
+    # Involutes of one base circle are parallel curves: turned by an angle, they are that times its radius apart.
+    depth = -region.base_radius * region.shaper.clearance(alpha, roll)
+    return np.asarray(np.maximum(depth, 0.0).max(axis=1))
 
 
 def pinion_flank(

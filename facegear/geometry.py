@@ -28,6 +28,7 @@ from facegear.symbolic import meshing
 ADDENDUM = 1.0  # pinion and face gear, in modules
 SHAPER_ADDENDUM = 1.25
 DEDENDUM = 1.25
+SHAPER_OVERHANG = 0.5  # by which the shaper is longer at either end than what generates the flank, in modules
 # With fewer, contact lines run through the cusp of the involute on the base circle.
 FEWEST_TEETH = 10
 
@@ -61,7 +62,8 @@ class Drive:
         A tooth number that is not an integer, or a length or angle that is not a number.
     ValueError
         A value outside its range; a shaper tooth pointed below its addendum circle (too few teeth);
-        undercutting that reaches beyond the pointing radius, so that no face width is left.
+        undercutting that reaches beyond the pointing radius, so that no face width is left; a shaft angle above 90°
+        at which the shaper cuts off every contact line again.
     """
 
     pinion_teeth: int
@@ -98,6 +100,13 @@ class Drive:
                 f"undercutting reaches out to {self.inner_limit:.6g} m, pointing in to "
                 f"{self.outer_limit:.6g} m along the shaper's axis; take other tooth numbers, "
                 f"or a pressure angle nearer to 25°"
+            )
+
+        if self.shaft_angle > _RIGHT_ANGLE and not self.contact_region.has_contact_lines:
+            raise ValueError(
+                f"shaft_angle={math.degrees(self.shaft_angle):.4g}° leaves no flank of pinion_teeth="
+                f"{self.pinion_teeth}, gear_teeth={self.gear_teeth}: the shaper cuts off all that it has generated; "
+                f"take a shaft angle nearer to 90° (any at or below is valid) or more gear_teeth"
             )
 
     # --- circles and angles of pinion and shaper ------------------------------------------------------------
@@ -293,6 +302,8 @@ class Drive:
             tooth_top_distance=self.tooth_top_distance,
             tip_roll=self.pinion_tip_roll,
             shaper_tip_roll=self.shaper_tip_roll,
+            pitch=2.0 * math.pi / self.pinion_teeth,
+            overhang=SHAPER_OVERHANG * self.module,
         )
 
     @property
@@ -385,12 +396,15 @@ class Drive:
         first = self._roll_angle(max(self.dedendum_radius, self.base_radius))
         return pinion_flank(self.contact_region, ends, first, along, across, flank)
 
-    def tip_undercut(self, along: int = 41, across: int = 4) -> FloatArray:
+    def tip_undercut(self, along: int = 41, across: int = 16) -> FloatArray:
         """Depth to which the shaper cuts into the flank that it has generated, along the face width [m].
 
         The condition of undercutting (3-8) asks whether a point of the flank is singular where it is generated,
-        not whether the shaper comes back to it. Between shafts at more than 90° the corner of its tip does, on its
-        way out, and takes some micrometres off the innermost few percent of the face width.
+        not whether the shaper comes back to it. Between shafts at more than 90° its tip does: some micrometres per
+        millimetre of module at 5:1, tens at 3:1, and tenths of a millimetre over the whole face at ratios near one
+        and 120° (`usable_radii` has what is left). At 90° it is a trace, in the innermost few percent of the face and
+        at low gear ratios only: up to 3.3 µm per millimetre of module at a ratio near one, 0.004 at 1.6, nothing from
+        1.7; at 89° nothing is cut. Contact lines and contact ratio of drives at up to 90° leave that trace out.
 
         Parameters
         ----------
@@ -400,7 +414,8 @@ class Drive:
         Returns
         -------
         ndarray, shape (along,)
-            Largest depth on each profile, an arc about the shaper's axis; 0 where nothing is cut.
+            Largest depth on each profile, square to the shaper's flank; 0 where nothing is cut. The shaper is longer
+            than what generates the flank by half a module at either end.
 
         Raises
         ------
@@ -412,6 +427,44 @@ class Drive:
             parameters.integer_at_least("along", along, 2),
             parameters.integer_at_least("across", across, 2),
         )
+
+    def usable_radii(self, roll: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Limits of the flank that the shaper leaves, against the height on the profile.
+
+        Parameters
+        ----------
+        roll : array_like
+            Roll angles θs of the shaper's point that generates the flank [rad], from 0 to `shaper_tip_roll`.
+
+        Returns
+        -------
+        inner, outer : ndarray, shape of `roll`
+            −y_p of the generating position, between `flank_start` and R2 [m]; NaN where nothing is left.
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric, not finite, or outside the profile.
+
+        Examples
+        --------
+        >>> import math
+        >>> from facegear import Drive
+        >>> drive = Drive(26, 130, 3.175e-3, shaft_angle=math.radians(110.0))
+        >>> inner, outer = drive.usable_radii(drive.pinion_tip_roll)
+        >>> [round(1e3 * float(radius), 2) for radius in (drive.inner_radius, inner, outer)]
+        [187.93, 188.73, 229.1]
+        """
+        rolls = parameters.finite_array("roll", roll, "rad")
+        outside = (rolls < 0.0) | (rolls > self.shaper_tip_roll)
+        if np.any(outside):
+            raise ValueError(
+                f"roll must lie between 0 and the shaper's tip at {self.shaper_tip_roll:.6g} rad, "
+                f"got {rolls[outside].flat[0]:.6g}"
+            )
+        pairs = np.array([self.contact_region.usable_radii(float(value)) for value in rolls.flat])
+        inner, outer = pairs.reshape(*rolls.shape, 2).transpose(-1, *range(rolls.ndim))
+        return inner, outer
 
     def top_thickness(self, radius: ArrayLike) -> FloatArray:
         """Thickness of the true face-gear tooth at its top, an arc about the gear's axis [m].

@@ -32,6 +32,8 @@ _SAME_INSTANT = 1e-12
 _GRADING, _SHORTEST = 8.0, 1e-9
 # Relative error of fits, and how short a piece must be, in mesh periods, before it may have more.
 _TOLERANCE, _SHORT = 1e-13, 1e-3
+# The same where the shaper shortens contact lines: their ends are roots of roots, known to 1e-14 or so.
+_CUT_TOLERANCE = 1e-11
 
 
 class PairStates(NamedTuple):
@@ -324,10 +326,11 @@ class ContactPath(_TimedPairs[PairStates]):
         On the short pieces next to a square root (`breakpoints`), and while the only pair leaves and the next one
         enters, an error counts by their duration.
         """
+        tolerance = _CUT_TOLERANCE if self.drive.contact_region.is_cut else _TOLERANCE
         widths = np.diff(self.breakpoints, append=1.0)
         if self.breakpoints == self._corners and self.contact_ratio >= 1.0 + _SHORT:
-            return np.full(widths.shape, _TOLERANCE)
-        return np.asarray(_TOLERANCE * np.maximum(1.0, _SHORT / widths))
+            return np.full(widths.shape, tolerance)
+        return np.asarray(tolerance * np.maximum(1.0, _SHORT / widths))
 
     def contact_point(self, fraction: ArrayLike) -> PairStates:
         """Contact point of one tooth pair against the fraction of its own mesh time cr T0.

@@ -3,6 +3,7 @@
 import math
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import mpmath
 import numpy as np
@@ -13,6 +14,7 @@ from scipy.integrate import fixed_quad
 from scipy.optimize import brentq
 
 from facegear.geometry import Drive
+from tests.independent.shaper_envelope import shaper_of
 
 CASE_I = Drive(26, 130, 3.175e-3)
 INCH = 25.4e-3
@@ -384,6 +386,8 @@ def brute_force_line(drive, phi):
             middle = 0.5 * (a + b)
             a, b = (middle, b) if allowed(middle) else (a, middle)
         ends.append(a)
+    if drive.shaft_angle > math.pi / 2:
+        ends[0] = shaper_of(drive).cut_end(phi, *ends)
     points = shaper_point(np.linspace(*ends, 40001))
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     share = [np.interp(0.5 * arc[-1], arc, points[:, i]) for i in range(3)]
@@ -486,6 +490,24 @@ def test_no_face_width_is_refused():
         ValueError, match=r"pinion_teeth=26, gear_teeth=130 leave no face width: undercutting"
     ):
         Overcut(26, 130, 3.175e-3)
+
+
+class AllCut(Drive):
+    """A drive whose shaper cuts off everything: no tooth numbers inside the valid ranges were found to do it."""
+
+    @property
+    def contact_region(self):
+        return SimpleNamespace(has_contact_lines=False)
+
+
+def test_no_flank_is_refused():
+    with pytest.raises(
+        ValueError, match=r"shaft_angle=120° leaves no flank of pinion_teeth=10, gear_teeth=11"
+    ):
+        AllCut(10, 11, 1e-3, math.radians(14.5), math.radians(120.0))
+    # The worst there is inside the ranges keeps contact lines for a little more than one mesh period of 2.4.
+    least = Drive(10, 11, 1e-3, math.radians(14.5), math.radians(120.0))
+    assert 1.0 < least.geometric_contact_ratio < 1.01
 
 
 def test_outer_edge_out_of_reach_is_refused():

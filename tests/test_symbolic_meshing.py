@@ -177,3 +177,17 @@ def test_compiled_is_cached_and_refuses_missing_arguments():
     assert np.shape(f(np.ones(3), *numbers[1:])) == (3,)
     with pytest.raises(ValueError, match="must cover every symbol of equation_of_meshing; missing"):
         s.compiled(s.equation_of_meshing, s.u_s)
+
+
+def test_returned_point_is_the_shaper_s_own_at_the_instant_and_rides_on_the_gear_after():
+    """At δ = 0 the shaper's point (3-2) turned by φs, on f = 0; later the same point of Γ2, by (3-4)."""
+    returned = s.returned_point().subs(s.alpha, s.phi_s + s.theta_0s + s.theta_s)
+    generated = s.shaper_surface().subs(s.u_s, s.meshing_position())
+    supplement = {s.gamma: sp.pi - s.gamma_m}
+    now = (s.rotation_ms() * generated).subs(supplement)
+    assert small(value(returned.subs(supplement).subs(s.delta, 0) - now))
+    turn = sp.Rational(3, 10)
+    on_gear = s.rotation_2s().subs(s.phi_2, s.m_2s * s.phi_s) * generated
+    later = {s.phi_2: s.m_2s * (s.phi_s + turn)}
+    back = s.rotation_pm().T * s.rotation_2p().subs(later).T * on_gear
+    assert small(value(returned.subs(supplement).subs(s.delta, turn) - back))

@@ -27,6 +27,7 @@ phi_s, phi_2 = sp.symbols("phi_s phi_2", real=True)  # rotation of shaper and fa
 gamma, gamma_m = sp.symbols("gamma gamma_m", positive=True)  # shaft angle and its supplement [rad]
 m_2s = sp.Symbol("m_2s", positive=True)  # gear ratio N_s/N_2
 Omega_s = sp.Symbol("Omega_s", positive=True)  # speed of the shaper [rad/s]
+delta = sp.Symbol("delta", real=True)  # rotation of the shaper since a point was generated [rad]
 alpha, alpha_c = sp.symbols("alpha alpha_c", positive=True)  # local and nominal pressure angle [rad]
 N_s = sp.Symbol("N_s", positive=True)  # number of shaper teeth
 t = sp.Symbol("t", real=True)  # tangent of the local pressure angle
@@ -287,6 +288,17 @@ def contact_point() -> Any:
         return sp.expand(component.subs(theta_0s, -theta_s))
 
     return position.applyfunc(contract).as_immutable()
+
+
+@cache
+def returned_point() -> Any:
+    """Point of the tooth in the shaper's fixed axes Γm when the shaper has turned by δ since, shape (3, 1) [m].
+
+    The face gear carries the contact point of α and θ_s on by m_2s δ about its own axis; at δ = 0 the third
+    component is u_s.
+    """
+    carried = _rotation(2, m_2s * delta) * contact_point()
+    return (rotation_pm().subs(gamma_m, sp.pi - gamma).T * carried).as_immutable()
 
 
 @cache

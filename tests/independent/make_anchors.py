@@ -3,22 +3,28 @@
 Takes some minutes; nothing here imports facegear.
 """
 
+import math
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import yaml
 from mpmath import mpf
 from tqdm import tqdm
 
 from tests.independent import meshing_mpmath as independent
+from tests.independent import shaper_envelope
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "anchors"
 ROUTE = (
     "tests/independent/meshing_mpmath.py: the shaper moved by three rotations, contact where its velocity has no "
-    "component along the numerical normal, 30 digits; lengths by quadrature, limits from the singular surface"
+    "component along the numerical normal, 30 digits; lengths by quadrature, limits from the singular surface; beyond "
+    "90 degrees the contact ratio by shaper_envelope.py, a shaper as a solid held against the points of the flank"
 )
 # What is left of the fourth-order differences in 30 digits is far below: the tolerance is that of double precision.
 LENGTH, ANGLE, NUMBER = 1e-11, 1e-10, 1e-10
+# A point that is just not cut, found by sampling the motion finer and finer about its deepest instant.
+BRUTE_FORCE = 1e-9
 
 CASE_1 = independent.Drive(26, 130, "3.175e-3")
 
@@ -126,6 +132,20 @@ def shaft_angles():
         yield anchor("inner_radius", independent.inner_limit(drive) * sine, LENGTH, shaft_angle_deg=shaft)
         yield anchor("outer_radius", independent.outer_limit(drive) * sine, LENGTH, shaft_angle_deg=shaft)
         yield anchor("contact_ratio", independent.tregold_contact_ratio(drive), NUMBER, shaft_angle_deg=shaft)
+        if shaft > 90:
+            # The shaper cuts the flank again: brute force, in double precision.
+            plain = SimpleNamespace(
+                pinion_teeth=26,
+                gear_teeth=130,
+                module=float(drive.module),
+                pressure_angle=math.radians(25),
+                shaft_angle=float(drive.shaft_angle),
+            )
+            limits = (
+                float(limit(drive) * sine) for limit in (independent.inner_limit, independent.outer_limit)
+            )
+            ratio = shaper_envelope.contact_ratio(plain, *limits)
+            yield anchor("geometric_contact_ratio", ratio, BRUTE_FORCE, shaft_angle_deg=shaft)
     yield anchor(
         "geometric_contact_ratio", independent.geometric_contact_ratio(CASE_1), NUMBER, shaft_angle_deg=90
     )
