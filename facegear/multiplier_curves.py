@@ -42,14 +42,14 @@ _TOGETHER = 1.4
 
 @dataclass(frozen=True, eq=False)
 class FrozenMotions:
-    """Motions e^{λ T0} of a model frozen at some instants, as functions of slowness 1/speed.
+    """Motions e^{p T0} of a model frozen at some instants, as functions of slowness 1/speed.
 
     Attributes
     ----------
     low, high : float
         Range of slowness.
     exponents : complex array, shape (m,)
-        λ T0 over slowness.
+        p T0 over slowness.
     """
 
     low: float
@@ -211,7 +211,7 @@ class MultiplierCurve:
         return found
 
     def spectral_radii(self, speeds: Array) -> Array:
-        """max|α| at speeds (m,)."""
+        """max|λ| at speeds (m,)."""
         matrices = self.transition_matrices(np.atleast_1d(speeds))
         return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
 

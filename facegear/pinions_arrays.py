@@ -150,7 +150,7 @@ def angle_map(
     turning = angles[:, np.newaxis] + np.radians(np.asarray(moving, dtype=float))
     table = _growth_table(model, speeds_rpm, np.concatenate([staying, turning], axis=1), jobs)
     return xr.Dataset(
-        {"growth_rate": _growth(("total_angle", "speed_rpm"), table, "Growth rate ln(max|α|)/T0")},
+        {"growth_rate": _growth(("total_angle", "speed_rpm"), table, "Growth rate ln(max|λ|)/T0")},
         coords={"total_angle": np.degrees(angles), "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
         attrs={
             "parameters": f"{describe(model)}, swept = total angle, pinions at {tuple(fixed)} deg and "
@@ -189,7 +189,7 @@ def phase_maps(
     table = _growth_table(model, speeds_rpm, np.stack([np.zeros_like(second), second], axis=1), jobs)
     return tuple(
         xr.Dataset(
-            {"growth_rate": _growth(("phase", "speed_rpm"), rows, "Growth rate ln(max|α|)/T0")},
+            {"growth_rate": _growth(("phase", "speed_rpm"), rows, "Growth rate ln(max|λ|)/T0")},
             coords={"phase": psi, "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
             attrs={"parameters": f"{describe(model)}, swept = phase, teeth = {number}"},
         )

@@ -73,7 +73,7 @@ def growth_map(
     speeds = np.asarray(speeds_rpm, dtype=float)
     chart = stability_map(model, rad_per_s(speeds), parameter, values, jobs=jobs, progress=False)
     return xr.Dataset(
-        {"growth_rate": _growth((parameter, "speed_rpm"), chart.values, "Growth rate ln(max|α|)/T0")},
+        {"growth_rate": _growth((parameter, "speed_rpm"), chart.values, "Growth rate ln(max|λ|)/T0")},
         coords={parameter: np.asarray(values, dtype=float), "speed_rpm": speeds},
         attrs={"parameters": f"{describe(model)}, swept = {parameter}"},
     )
@@ -112,7 +112,7 @@ def map_family(
     ]
     stacked = np.stack([chart["growth_rate"].values for chart in maps])
     return xr.Dataset(
-        {"growth_rate": _growth((name, parameter, "speed_rpm"), stacked, "Growth rate ln(max|α|)/T0")},
+        {"growth_rate": _growth((name, parameter, "speed_rpm"), stacked, "Growth rate ln(max|λ|)/T0")},
         coords={name: list(members), **maps[0].coords},
         attrs={"parameters": f"{describe(model)}, swept = {parameter} and {name}"},
     )
@@ -295,7 +295,7 @@ def convergence(
         rows.append(chart.values[0])
     return xr.Dataset(
         {
-            "growth_rate": _growth(("basis", "speed_rpm"), rows, "Growth rate ln(max|α|)/T0"),
+            "growth_rate": _growth(("basis", "speed_rpm"), rows, "Growth rate ln(max|λ|)/T0"),
             "circles": variable("basis", [m for m, _ in modes], "Largest number of nodal circles", "1"),
             "diameters": variable("basis", [n for _, n in modes], "Largest number of nodal diameters", "1"),
         },
