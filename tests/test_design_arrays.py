@@ -130,5 +130,5 @@ def test_thickness_figure_has_cells_tongues_and_tips_of_the_model():
     words = {text.get_text() for text in figure.axes[0].texts}
     widest = data["upper"] - data["lower"]
     label = data.attrs["labels"].split("\n")[0].split()[int(widest[0].argmax("tongue"))]
-    assert {"safe zone", "response-\nunsafe\nzone", "B (1+9)/1: 0.0394", f"C {label}"} <= words
+    assert {"no tongue found", "response-\nunsafe\nzone", "B (1+9)/1: 0.0394", f"C {label}"} <= words
     assert dict(mpl.rcParams) == before
