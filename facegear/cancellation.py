@@ -1,14 +1,14 @@
 r"""Which positions of the pinions silence a tongue (chapter 5).
 
 Pinion i, at angle θ_i and phase ψ_i, is the first one moved on: r_i(t) = r_1(t + ψ_i T0) and
-θ_i(t) = θ_i + θ_1(t + ψ_i T0) (5-4). In the complex coordinates of (5-7) its load couples e^{inθ} and e^{iqθ} through
-e^{−i(n−q)θ_i(t)} R_n R_q(r_i(t)), whose Fourier coefficient of order s is that of the first pinion times
-e^{i[2πsψ_i − (n−q)θ_i]}. A combination resonance of order s needs just that coefficient. For two waves e^{i(λt − nθ)}
+θ_i(t) = θ_i + θ_1(t + ψ_i T0) (5-4). In the complex coordinates of (5-7) its load couples e^{inθ} and e^{in′θ} through
+e^{−i(n−n′)θ_i(t)} R_n R_n′(r_i(t)), whose Fourier coefficient of order s is that of the first pinion times
+e^{i[2πsψ_i − (n−n′)θ_i]}. A combination resonance of order s needs just that coefficient. For two waves e^{i(ωt − nθ)}
 of n_1 and n_2 nodal diameters, positive where they run towards growing θ, all pinions together thus give
 
     S = Σ_i exp(i[2πsψ_i + (n_1 ± n_2) θ_i])                                                             (C-1)
 
-times the coupling by one: plus for a sum, sω = λ_1 + λ_2, minus for a difference. To first order in the load the
+times the coupling by one: plus for a sum, sω = ω_1 + ω_2, minus for a difference. To first order in the load the
 tongue's width and growth are those of one pinion times |S|. And as 2πψ_i is N_2 θ_i but for whole turns (5-1),
 
     S = Σ_i exp(i (s N_2 + n_1 ± n_2) θ_i) :                                                              (C-2)
@@ -156,7 +156,7 @@ def loud_wave_numbers(gear_teeth: int, pinions: int, highest: int, order: int = 
 
 @dataclass(frozen=True)
 class Wave:
-    """A wave e^{i(λt − nθ)} of the spinning disk.
+    """A wave e^{i(ωt − nθ)} of the spinning disk.
 
     Attributes
     ----------
@@ -170,7 +170,7 @@ class Wave:
     nodal_diameters: int
 
     def frequency(self, waves: DiskWaves) -> float:
-        """Natural frequency λ [rad/s] in the space-fixed frame.
+        """Natural frequency ω [rad/s] in the space-fixed frame.
 
         Raises
         ------
@@ -191,7 +191,7 @@ class WavePair:
     ----------
     first, second : Wave
     kind : {"sum", "difference"}
-        sω = λ_1 + λ_2 or λ_1 − λ_2.
+        sω = ω_1 + ω_2 or ω_1 − ω_2.
     order : int
         s.
     """

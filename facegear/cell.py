@@ -22,7 +22,7 @@ from facegear.transverse import Transverse, shape_vector
 ComplexArray = NDArray[np.complex128]
 
 UNSTABLE = 1e-8
-"""Growth in a period, max|α| − 1, from which a cell counts as unstable [-], as for tongues."""
+"""Growth in a period, max|λ| − 1, from which a cell counts as unstable [-], as for tongues."""
 
 # Tongues are looked for within these factors of the speed of a cell, the next where they pass the ends.
 _WINDOWS = (1.04, 1.2)
@@ -40,7 +40,7 @@ class CellDetail:
     speed : float
         [rad/s].
     growth_rate : float
-        ln(max|α|)/T0 [1/s].
+        ln(max|λ|)/T0 [1/s].
     multipliers : ndarray of complex, shape (2n,)
         Largest modulus first.
     critical : complex
@@ -159,7 +159,7 @@ def _deflection(model: Transverse, motion: ComplexArray) -> tuple[xr.DataArray, 
 
 
 def _history(system: PeriodicSystem, state: ComplexArray, critical: complex) -> xr.DataArray:
-    """Displacements of the critical motion over some periods: integrated over one, α times that in the next."""
+    """Displacements of the critical motion over some periods: integrated over one, λ times that in the next."""
     kicks = dict(system.velocity_kicks())
     edges = np.append(system.breakpoints, 1.0)
     instants, motion = [], []

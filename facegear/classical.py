@@ -1,8 +1,8 @@
 """Classical periodic systems whose stability is known in closed form or from tables (section 2.1).
 
-One coordinate with natural frequency ω0, depth of modulation ε and damping ratio ζ,
+One coordinate with natural frequency ω0, depth of modulation ε and damping ratio ϑ,
 
-    q̈ + 2 ζ ω0 q̇ + ω0² [1 + ε w(ωt)] q = 0,
+    q̈ + 2 ϑ ω0 q̇ + ω0² [1 + ε w(ωt)] q = 0,
 
 is Mathieu's equation for w = cos and Meissner's for a square wave. Two coordinates with one modulated spring have
 combination resonances, and a pair of gears has a mesh stiffness that steps as tooth pairs enter and leave.
@@ -94,7 +94,7 @@ def hill(
     wave : PiecewiseChebyshev
         w over the fraction of the period, one component.
     damping_ratio : float
-        ζ [-], from 0 to below 1.
+        ϑ [-], from 0 to below 1.
     natural_frequency : float
         ω0 [rad/s].
 
@@ -131,7 +131,7 @@ def hill(
 def mathieu(
     frequency: float, depth: float, damping_ratio: float = 0.0, natural_frequency: float = 1.0
 ) -> PeriodicSystem:
-    """Mathieu's equation q̈ + 2ζω0 q̇ + ω0² (1 + ε cos ωt) q = 0.
+    """Mathieu's equation q̈ + 2ϑω0 q̇ + ω0² (1 + ε cos ωt) q = 0.
 
     With z = ωt/2 it is the standard form q'' + (a - 2 p cos 2z) q = 0, a = (2ω0/ω)², p = -ε a/2, apart from the
     damping.
@@ -190,7 +190,7 @@ def meissner_trace(
 ) -> Array:
     """Trace of the transition matrix of Meissner's equation in closed form.
 
-    tr Φ = exp(-ζω0T0) [2 cos a cos b - (p/r + r/p) sin a sin b] with p² = ω0² (1 + ε - ζ²), r² = ω0² (1 - ε - ζ²),
+    tr Φ = exp(-ϑω0T0) [2 cos a cos b - (p/r + r/p) sin a sin b] with p² = ω0² (1 + ε - ϑ²), r² = ω0² (1 - ε - ϑ²),
     a = p d T0 and b = r (1 - d) T0, d the duty; the undamped equation is stable while |tr Φ| < 2.
 
     Parameters
@@ -210,7 +210,7 @@ def meissner_trace(
     damping_ratio = finite("damping_ratio", damping_ratio)
     natural_frequency = finite("natural_frequency", natural_frequency, "rad/s")
     period = 2.0 * np.pi / w
-    # Complex, because the softer part has no frequency where ε + ζ² > 1.
+    # Complex, because the softer part has no frequency where ε + ϑ² > 1.
     p, r = (natural_frequency * np.sqrt(1.0 + sign * eps - damping_ratio**2 + 0j) for sign in (1.0, -1.0))
     a, b = p * d * period, r * (1.0 - d) * period
     # sin b / r stays finite where r vanishes.
@@ -292,7 +292,7 @@ def gear_pair(
     """Pinion and gear on sprung shafts with the mesh stiffness of the tooth pairs in contact.
 
     Coordinates are the motions of both base circles along the line of action. A pair's stiffness over its sweep is
-    k [1 - β (2s - 1)²], s from 0 at entry to 1 at exit: with β = 0 the mesh stiffness steps, with β = 1 it has
+    k [1 - κ (2s - 1)²], s from 0 at entry to 1 at exit: with κ = 0 the mesh stiffness steps, with κ = 1 it has
     kinks only, because every pair enters and leaves without stiffness.
 
     Parameters
@@ -304,7 +304,7 @@ def gear_pair(
     pair_stiffness, pair_damping : float
         k [N/m] and c [N s/m] of one pair at mid-sweep, not negative; damping follows the stiffness.
     droop : float
-        β [-], from 0 to 1.
+        κ [-], from 0 to 1.
     shaft_stiffnesses : tuple of float
         Stiffness of both shafts, reduced to the line of action [N/m], positive.
     shaft_damping : float

@@ -10,7 +10,7 @@ modal coordinates y of the free motion, ẏ = Λ y − Σ β_a f_a, variation of
 
     [I + k H₀ + c H₁ + m (H₂ + D)] f = (k F₀ + c F₁ + m F₂) y₀,    y₁ = E y₀ − G f
 
-where H_s = h a_ij Re Σ_m z_s,im e^{λ_m (t_i − t_j)} β_jm, with spectral integration weights a_ij; z₀, z₁, z₂ turn
+where H_s = h a_ij Re Σ_m z_s,im e^{p_m (t_i − t_j)} β_jm, with spectral integration weights a_ij; z₀, z₁, z₂ turn
 modal coordinates into u, u̇, ü of the free motion and D_ab = φ_aᵀ M⁻¹ φ_b, which carries the contact mass exactly.
 H, F, E, G do not depend on k, c, m, so a whole column of a map shares them.
 """
@@ -52,7 +52,7 @@ class FreeModes:
     Attributes
     ----------
     eigenvalues : array of complex, shape (n,)
-        λ with positive imaginary part [1/s].
+        p with positive imaginary part [1/s].
     displacement, velocity : array of complex, shape (n, n)
         Columns of modes, scaled to unit kinetic energy.
     coordinates : array of complex, shape (n, 2n)

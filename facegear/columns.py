@@ -62,7 +62,7 @@ def column_spectral_radii(
     Returns
     -------
     array, shape (V,)
-        max|α| [-], error at most 1e-9 unless multipliers are about to coincide.
+        max|λ| [-], error at most 1e-9 unless multipliers are about to coincide.
 
     Raises
     ------

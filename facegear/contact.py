@@ -1,8 +1,8 @@
 """Contact lines of a face-gear tooth as plain numbers: where they end, how long they are, their middle.
 
 A point of the tooth flank is named by two angles: the roll angle θs of the involute (3-2) and the local
-pressure angle α = φs + θ0s + θs, which (3-7) ties to the position along the shaper's axis,
-u_s = r_bs cot γs / cos α. At a rotation φs the contact line is the straight line θs = α − c in the (α, θs)
+pressure angle α_s = φs + θ0s + θs, which (3-7) ties to the position along the shaper's axis,
+u_s = r_bs cot γs / cos α_s. At a rotation φs the contact line is the straight line θs = α_s − c in the (α_s, θs)
 plane, with c = φs + θ0s. It lies between three edges of the face-gear tooth and two circles of the pinion:
 
 - inner and outer edge: the planes −y_p = R1 and −y_p = R2 normal to the gear plane's radius at the pinion,
@@ -95,7 +95,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class ContactRegion:
-    """The part of the (α, θs) plane where pinion and face-gear tooth touch during a mesh cycle.
+    """The part of the (α_s, θs) plane where pinion and face-gear tooth touch during a mesh cycle.
 
     Parameters
     ----------
@@ -136,11 +136,11 @@ class ContactRegion:
     # --- one point ---------------------------------------------------------------------------------------
 
     def point(self, alpha: ArrayLike, roll: ArrayLike) -> FloatArray:
-        """Contact point in the space-fixed Γp, shape (..., 3) [m], from α and θs [rad]."""
+        """Contact point in the space-fixed Γp, shape (..., 3) [m], from α_s and θs [rad]."""
         return np.stack(np.broadcast_arrays(*self._components(alpha, roll)), axis=-1)
 
     def position(self, alpha: ArrayLike) -> Any:
-        """Coordinate u_s along the shaper's axis where f = 0 (3-7) [m], from α [rad]."""
+        """Coordinate u_s along the shaper's axis where f = 0 (3-7) [m], from α_s [rad]."""
         return self.base_radius * self.cone_cotangent / np.cos(alpha)
 
     @property
@@ -177,12 +177,12 @@ class ContactRegion:
 
     def edge_angle(self, radius: float, roll: float) -> float:
         """Local pressure angle at −y_p = `radius` on the profile point `roll` [rad]."""
-        # Next to α = 0, −y_p may fall before it rises: the branch in use is the rising one.
+        # Next to α_s = 0, −y_p may fall before it rises: the branch in use is the rising one.
         lowest = self._lowest_angle(roll)
         return root(lambda alpha: float(self.radial_position(alpha, roll)) - radius, lowest, _STEEPEST)
 
     def _lowest_angle(self, roll: float) -> float:
-        """Where −y_p is least at constant θs: cot γs sin α / cos² α = cot γ (θs cos α − sin α)."""
+        """Where −y_p is least at constant θs: cot γs sin α_s / cos² α_s = cot γ (θs cos α_s − sin α_s)."""
         cotangent = 1.0 / math.tan(self.shaft_angle)
         cone = self.cone_cotangent
 
@@ -276,7 +276,7 @@ class ContactRegion:
             if self._clear_when_generated(corner):
                 changes.append(corner)
         elif self.tooth_top_distance < self.base_radius:
-            # Neither tooth top nor inner edge is reached: lines that began on the base circle then do at α = 0.
+            # Neither tooth top nor inner edge is reached: lines that began on the base circle then do at α_s = 0.
             changes.append(0.0)
         return tuple(sorted((c for c in changes if self.exit < c < self.entry), reverse=True))
 
@@ -505,7 +505,7 @@ class ContactRegion:
     def line_ends(self, c: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Local pressure angles at the two ends of the contact lines, each of the shape of `c` [rad].
 
-        Along a line −y_p and the depth both grow with α, so that every edge cuts off one end.
+        Along a line −y_p and the depth both grow with α_s, so that every edge cuts off one end.
         """
         offset = np.asarray(c, dtype=np.float64)
         lower, upper = self._generated_ends(offset)
@@ -518,7 +518,7 @@ class ContactRegion:
         """Local pressure angles at the ends of lines on the flank as (3-8) leaves it, see `line_ends` [rad]."""
         offset = np.asarray(c, dtype=np.float64)
         tip = offset + self.tip_roll
-        # α < 0 is the branch of the meshing surface beyond the undercut.
+        # α_s < 0 is the branch of the meshing surface beyond the undercut.
         lowest = np.maximum(offset, 0.0)
 
         def above_top(alpha: FloatArray, line: FloatArray) -> FloatArray:

@@ -178,7 +178,7 @@ class ContactLines:
     rotation : ndarray, shape S
         φs [rad].
     lower, upper : ndarray, shape S
-        Local pressure angles α at the two ends [rad]; the upper end lies further out.
+        Local pressure angles α_s at the two ends [rad]; the upper end lies further out.
     """
 
     region: ContactRegion
@@ -216,7 +216,7 @@ class ContactLines:
         return np.arctan2(self.contact_point[..., 0], -self.contact_point[..., 1])
 
     def shaper_points(self, count: int = 33, flank: int = 1) -> FloatArray:
-        """Points along the lines in the pinion's frame Γs, equally spaced in α.
+        """Points along the lines in the pinion's frame Γs, equally spaced in α_s.
 
         Parameters
         ----------

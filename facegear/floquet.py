@@ -1,7 +1,7 @@
 """Floquet analysis of periodic linear systems (section 2.2.1).
 
-The state X = (q, q̇) after one period is Φ(T0, 0) X(0); the eigenvalues α of the transition matrix Φ, the
-Floquet multipliers, decide: the system is stable if and only if every |α| ≤ 1 (2-5 to 2-8). Each method of
+The state X = (q, q̇) after one period is Φ(T0, 0) X(0); the eigenvalues λ of the transition matrix Φ, the
+Floquet multipliers, decide: the system is stable if and only if every |λ| ≤ 1 (2-5 to 2-8). Each method of
 this module is a small frozen dataclass that turns a system into its Φ:
 
 - :class:`Stepwise`: the text's rule, A(t) held at its midpoint value in equal sub-intervals (2-9 to 2-11);
@@ -315,9 +315,9 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
 
 
 def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
-    """Growth rate ln(max|α|)/T0 [1/s] (2-8); the system is unstable where it is positive.
+    """Growth rate ln(max|λ|)/T0 [1/s] (2-8); the system is unstable where it is positive.
 
-    Where all motions die within a period it is known no better than max|α|, whose error is relative to 1.
+    Where all motions die within a period it is known no better than max|λ|, whose error is relative to 1.
     """
     radius = np.abs(multipliers(system, method)[0])
     return float(np.log(radius) / system.period)
@@ -334,7 +334,7 @@ def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = No
 
 
 def error_estimate(system: PeriodicSystem, method: Method) -> float:
-    """Estimate of the error of the spectral radius max|α| found by a method.
+    """Estimate of the error of the spectral radius max|λ| found by a method.
 
     The dominant multiplier of the method is compared with the nearest one of its refinement, and the other way
     round. That distance bounds the difference of the two spectral radii, and unlike that difference it does not

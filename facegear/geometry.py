@@ -178,7 +178,7 @@ class Drive:
 
     @property
     def cone_cotangent(self) -> float:
-        """Cot γ_s (3-16), so that u_s = r_bs cot γ_s / cos α wherever f = 0."""
+        """Cot γ_s (3-16), so that u_s = r_bs cot γ_s / cos α_s wherever f = 0."""
         function = meshing.compiled(meshing.pointing_cone_angle_cotangent, meshing.m_2s, meshing.gamma)
         return float(function(self.gear_ratio, self.shaft_angle))
 
@@ -219,11 +219,11 @@ class Drive:
 
     @cached_property
     def pointing_angle(self) -> float:
-        """α of the pointing section [rad] (3-15)."""
+        """α_p, the pressure angle α_s of the pointing section [rad] (3-15)."""
         s = meshing
         function = s.compiled(s.pointing_condition, s.alpha, s.theta_0s, s.r_top, s.r_bs)
         arguments = (self.space_half_angle, self.tooth_top_distance, self.base_radius)
-        # The condition falls to a minimum at cos α = r_bs/r_top, if there is one, and rises through the root.
+        # The condition falls to a minimum at cos α_s = r_bs/r_top, if there is one, and rises through the root.
         lowest = math.acos(min(1.0, self.base_radius / self.tooth_top_distance))
         return root(lambda angle: float(function(angle, *arguments)), lowest, _RIGHT_ANGLE)
 

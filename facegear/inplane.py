@@ -1,7 +1,7 @@
 """Plane stress of a spinning disk under forces at its rim that rest in space (section 6.2).
 
-A tangential force at the rim, at angle α, makes u_r = U sin k(θ-α), u_θ = V cos k(θ-α), σ_rr = S sin k(θ-α),
-σ_rθ = T cos k(θ-α), σ_θθ = H sin k(θ-α) in its kth harmonic (6-6, 6-22). A radial force makes the same functions of
+A tangential force at the rim, at angle θ_F, makes u_r = U sin k(θ-θ_F), u_θ = V cos k(θ-θ_F), σ_rr = S sin k(θ-θ_F),
+σ_rθ = T cos k(θ-θ_F), σ_θθ = H sin k(θ-θ_F) in its kth harmonic (6-6, 6-22). A radial force makes the same functions of
 r with other conditions at the rim, a quarter of a wave on: cos, -sin, cos in the three stresses. With s = ln x,
 x = r/a, P = xS, Q = xT, lengths over a and stresses over E, the steady part of (6-2), (6-3) is for every k
 
@@ -177,7 +177,7 @@ class EdgeLoadStress:
     direction : {"tangential", "radial"}
         Of the force.
     angle : float
-        α [rad], where the force acts.
+        θ_F [rad], where the force acts.
 
     Raises
     ------
@@ -243,7 +243,7 @@ class EdgeLoadStress:
         Returns
         -------
         ndarray, shape of `r`
-            S [Pa], factor of sin k(θ - α) for a tangential force and of cos k(θ - α) for a radial one.
+            S [Pa], factor of sin k(θ - θ_F) for a tangential force and of cos k(θ - θ_F) for a radial one.
 
         Raises
         ------
@@ -254,12 +254,12 @@ class EdgeLoadStress:
         return radial
 
     def shear(self, k: int, r: ArrayLike) -> FloatArray:
-        """Shear stress of harmonic k [Pa], factor of cos k(θ - α), or -sin k(θ - α); as `radial` in all else."""
+        """Shear stress of harmonic k [Pa], factor of cos k(θ - θ_F), or -sin k(θ - θ_F); as `radial` in all else."""
         shear: FloatArray = self._amplitudes(k, r)[1]
         return shear
 
     def hoop(self, k: int, r: ArrayLike) -> FloatArray:
-        """Hoop stress of harmonic k [Pa], factor of sin k(θ - α), or cos k(θ - α); as `radial` in all else."""
+        """Hoop stress of harmonic k [Pa], factor of sin k(θ - θ_F), or cos k(θ - θ_F); as `radial` in all else."""
         hoop: FloatArray = self._amplitudes(k, r)[2]
         return hoop
 

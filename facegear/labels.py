@@ -1,6 +1,6 @@
 """Names of instabilities: which modes, sum or difference, which order.
 
-The motion of the critical multiplier α = e^{(σ + iθ/T0) T0} is made of the natural motions of the mean system, of
+The motion of the critical multiplier λ = e^{(σ + iθ/T0) T0} is made of the natural motions of the mean system, of
 which those matter that keep in step with it: ±ω_k ≡ θ/T0 modulo ω = 2π/T0. Two such, Ω_a − Ω_b ≈ sω, make a
 combination resonance of order s. It is a sum if their frequencies have different signs, else a difference. Modes are
 numbered as in :mod:`facegear.modal`, by ascending natural frequency of the mean system at the given speed.

@@ -88,8 +88,8 @@ def stability_map(
     Returns
     -------
     xarray.DataArray, shape (V, S)
-        ln(max|α|)/T0 [1/s] (2-8), unstable where positive; dimensions named after the parameter and "speed".
-        Attribute ``error_estimate`` is the largest difference of max|α| from a more accurate method, and what
+        ln(max|λ|)/T0 [1/s] (2-8), unstable where positive; dimensions named after the parameter and "speed".
+        Attribute ``error_estimate`` is the largest difference of max|λ| from a more accurate method, and what
         rounding does to it, in the corner cells and the middle one.
 
     Raises
@@ -133,11 +133,11 @@ def stability_map(
         name="growth_rate",
         attrs={
             "units": "1/s",
-            "long_name": "growth rate ln(max|α|)/T0",
+            "long_name": "growth rate ln(max|λ|)/T0",
             "model": repr(model),
             "method": sweep.description,
             "error_estimate": error,
-            "error_estimate_of": "spectral radius max|α| [-], corner cells and middle cell",
+            "error_estimate_of": "spectral radius max|λ| [-], corner cells and middle cell",
             "facegear_version": version("facegear"),
         },
     )
@@ -375,7 +375,7 @@ def _spectral_radius(system: PeriodicSystem, method: Method | None) -> float:
 
 
 def _error_estimate(sweep: _Sweep, speeds: Array, radii: Array) -> float:
-    """Largest difference of max|α| from a more accurate method, and rounding, corner cells and middle cell."""
+    """Largest difference of max|λ| from a more accurate method, and rounding, corner cells and middle cell."""
     last_value, last_speed = radii.shape[0] - 1, radii.shape[1] - 1
     cells = {(v, s) for v in (0, last_value) for s in (0, last_speed)} | {(last_value // 2, last_speed // 2)}
     worst = 0.0

@@ -234,8 +234,8 @@ def modal_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
 
     Notes
     -----
-    A motion v_b exp(λ_b t) of the mean system meets the harmonic (λ_b² M_s + λ_b C_s + K_s) v_b exp(isωt);
-    its projection on the left eigenvector of λ_a is Â_{s,ab}. A varying mass needs no inverse of M(t).
+    A motion v_b exp(p_b t) of the mean system meets the harmonic (p_b² M_s + p_b C_s + K_s) v_b exp(isωt);
+    its projection on the left eigenvector of p_a is Â_{s,ab}. A varying mass needs no inverse of M(t).
     """
     order = integer_at_least("order", order, 1)
     mass, damping, stiffness = system.fourier(order)

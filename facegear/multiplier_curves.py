@@ -51,14 +51,14 @@ _MOST_AT_ONCE, _CUBES_AT_ONCE = 512, 100_000_000
 
 @dataclass(frozen=True, eq=False)
 class FrozenMotions:
-    """Motions e^{λ T0} of a model frozen at some instants, as functions of slowness 1/speed.
+    """Motions e^{p T0} of a model frozen at some instants, as functions of slowness 1/speed.
 
     Attributes
     ----------
     low, high : float
         Range of slowness.
     exponents : complex array, shape (m,)
-        λ T0 over slowness.
+        p T0 over slowness.
     """
 
     low: float
@@ -240,7 +240,7 @@ class MultiplierCurve:
         return found
 
     def spectral_radii(self, speeds: Array) -> Array:
-        """max|α| at speeds (m,)."""
+        """max|λ| at speeds (m,)."""
         speeds = np.atleast_1d(speeds)
         parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
         eigenvalues = [np.linalg.eigvals(self.transition_matrices(part)) for part in parts]

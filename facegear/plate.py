@@ -55,9 +55,9 @@ class RadialModes:
     nodal_diameters : int
         n.
     roots : ndarray, shape (M + 1,)
-        λ_mn = β_mn a, so that the natural frequency is λ² √(D/(ρ h))/a² [-].
+        k_mn = β_mn a, so that the natural frequency is k² √(D/(ρ h))/a² [-].
     coefficients : ndarray, shape (M + 1, 4)
-        Factors of J_n(λx), Y_n(λx), I_n(λx) e^(-λ) and K_n(λx) e^(λc) [-]. They make ∫ R² x dx = 1 over
+        Factors of J_n(kx), Y_n(kx), I_n(kx) e^(-k) and K_n(kx) e^(kc) [-]. They make ∫ R² x dx = 1 over
         the plate and R(1) > 0, (4-7).
     """
 
@@ -341,7 +341,7 @@ class Body:
 def _bessel_functions(
     n: int, root: float, x: FloatArray, bore_ratio: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """J_n, Y_n, I_n e^(-λ), K_n e^(λc) at z = λx and their first two derivatives in z, shape (4, ...)."""
+    """J_n, Y_n, I_n e^(-k), K_n e^(kc) at z = kx and their first two derivatives in z, shape (4, ...)."""
     z = root * x
     # Both exponentials fall away from the edge at which they are one, so nothing overflows.
     from_rim, from_bore = np.exp(-root * (1.0 - x)), np.exp(-root * (x - bore_ratio))
@@ -371,15 +371,15 @@ def _boundary_matrix(
     edges = np.array([bore_ratio, 1.0])
     value, slope, curvature = _bessel_functions(n, root, edges, bore_ratio)
     inner, rim, nu = 0, 1, poissons_ratio
-    # Where the shear condition takes d/dr of the Laplacian: it is -λ² f for J, Y and +λ² f for I, K.
+    # Where the shear condition takes d/dr of the Laplacian: it is -k² f for J, Y and +k² f for I, K.
     laplacian_sign = np.array([-1.0, -1.0, 1.0, 1.0])
     matrix = np.stack(
         [
             value[:, inner],
             slope[:, inner],
-            # bending moment over λ²
+            # bending moment over k²
             curvature[:, rim] + nu * (slope[:, rim] / root - n**2 * value[:, rim] / root**2),
-            # Kirchhoff shear force over λ³
+            # Kirchhoff shear force over k³
             laplacian_sign * slope[:, rim]
             - (1 - nu) * n**2 * (slope[:, rim] / root**2 - value[:, rim] / root**3),
         ]
@@ -389,7 +389,7 @@ def _boundary_matrix(
 
 
 def _refined_root(estimate: float, n: int, bore_ratio: float, poissons_ratio: float) -> float:
-    """Root λ of the determinant next to an estimate, to rounding."""
+    """Root k of the determinant next to an estimate, to rounding."""
 
     def determinant(root: float) -> float:
         return float(np.linalg.det(_boundary_matrix(root, n, bore_ratio, poissons_ratio)[0]))
@@ -397,7 +397,7 @@ def _refined_root(estimate: float, n: int, bore_ratio: float, poissons_ratio: fl
     low, high = estimate * (1 - _BRACKET), estimate * (1 + _BRACKET)
     if determinant(low) * determinant(high) >= 0:
         raise ArithmeticError(
-            f"no root of the plate determinant at λ = {estimate} for n = {n}, bore ratio {bore_ratio}, "
+            f"no root of the plate determinant at k = {estimate} for n = {n}, bore ratio {bore_ratio}, "
             f"Poisson ratio {poissons_ratio}"
         )
     return float(optimize.brentq(determinant, low, high, xtol=1e-15 * estimate, rtol=4 * np.finfo(float).eps))
@@ -410,10 +410,10 @@ def _null_vector(root: float, n: int, bore_ratio: float, poissons_ratio: float) 
 
 
 def _ritz_roots(bore_ratio: float, poissons_ratio: float, nodal_circles: int, n: int) -> FloatArray:
-    """Rayleigh-Ritz estimates of λ for 0, ..., nodal_circles, ascending, shape (nodal_circles + 1,).
+    """Rayleigh-Ritz estimates of k for 0, ..., nodal_circles, ascending, shape (nodal_circles + 1,).
 
     The trial functions are those with Legendre polynomials as second derivatives and clamped at the bore.
-    They make the stiffness matrix well conditioned; as the eigenvalue sought is 1/λ⁴, the lowest modes come
+    They make the stiffness matrix well conditioned; as the eigenvalue sought is 1/k⁴, the lowest modes come
     out with nearly full accuracy.
     """
     x, weights = plate_quadrature(bore_ratio)

@@ -281,7 +281,7 @@ def growth_map(
     chart = stability_map(model, rad_per_s(speeds), parameter, values, jobs=jobs, progress=False)
     name = parameter_path(model, parameter)[-1]
     return xr.Dataset(
-        {"growth_rate": _growth((name, "speed_rpm"), chart.values, "Growth rate ln(max|α|)/T0")},
+        {"growth_rate": _growth((name, "speed_rpm"), chart.values, "Growth rate ln(max|λ|)/T0")},
         coords={name: np.asarray(values, dtype=float), "speed_rpm": speeds},
         attrs={"parameters": f"{parameters}, swept = {parameter}"},
     )

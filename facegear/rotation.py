@@ -1,12 +1,12 @@
 """Transition matrices of one disk under pinions at very many angles (chapter 5).
 
-The total angle of a pinion does two things. Whole teeth of it turn the contact about the axis, θ → θ + α; what is
+The total angle of a pinion does two things. Whole teeth of it turn the contact about the axis, θ → θ + θ_a; what is
 left over sets the phase ψ of its mesh (5-1, 5-2). The spinning disk looks alike from all sides: its free motions are
-waves e^{i(λt − nθ)}, and a rotation multiplies what a contact sees of each, and what its force does to each, by
-e^{∓inα}. So of the equations of :mod:`facegear.collocation` all is known for every α as soon as it is known for
-α = 0, at given phases:
+waves e^{i(ωt − nθ)}, and a rotation multiplies what a contact sees of each, and what its force does to each, by
+e^{∓inθ_a}. So of the equations of :mod:`facegear.collocation` all is known for every θ_a as soon as it is known for
+θ_a = 0, at given phases:
 
-    H_ab(α) = Re Σ_n e^{−in(α_a − α_b)} H_ab,n,    F_a(α) = F_a e^{−inα_a},    G_b(α) = e^{inα_b} G_b.
+    H_ab(θ) = Re Σ_n e^{−in(θ_a − θ_b)} H_ab,n,    F_a(θ) = F_a e^{−inθ_a},    G_b(θ) = e^{inθ_b} G_b.
 
 This is exact, and a whole column of a map over the total angle needs one preparation for each phase.
 """
@@ -46,9 +46,9 @@ class DiskWaves:
     Attributes
     ----------
     eigenvalues : complex array, shape (n,)
-        λ with positive imaginary part [1/s].
+        p with positive imaginary part [1/s].
     waves : array, shape (n,)
-        Signed nodal diameters n of e^{i(Im λ t − nθ)}: positive for a wave that runs towards growing θ.
+        Signed nodal diameters n of e^{i(Im p t − nθ)}: positive for a wave that runs towards growing θ.
     displacement, velocity, input : complex array, shape (n, n)
         As in :class:`facegear.collocation.FreeModes`.
     """
@@ -96,7 +96,7 @@ class DiskWaves:
 
 
 def _senses(displacement: ComplexArray) -> Array:
-    """Sense of each wave a e^{iλt} cos nθ + b e^{iλt} sin nθ, first half of the rows a, second half b: b = ±ia."""
+    """Sense of each wave a e^{ipt} cos nθ + b e^{ipt} sin nθ, first half of the rows a, second half b: b = ±ia."""
     cosine, sine = np.split(displacement, 2)
     ratio = (sine * cosine.conj()).sum(axis=0) / (np.abs(cosine) ** 2).sum(axis=0)
     if np.abs(np.abs(ratio.imag) - 1.0).max() > 1e-6 or np.abs(ratio.real).max() > 1e-6:
@@ -257,7 +257,7 @@ def growth_rates_at_angles(model: Transverse, speed: float, pinion_angles: Array
     Returns
     -------
     array, shape (V,)
-        ln(max|α|)/T0 [1/s], as :func:`facegear.floquet.growth_rate` of the model with each set.
+        ln(max|λ|)/T0 [1/s], as :func:`facegear.floquet.growth_rate` of the model with each set.
 
     Raises
     ------

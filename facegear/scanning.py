@@ -125,8 +125,8 @@ def _foretold(
 ) -> tuple[Array, Array, Scan]:
     """Meetings of multipliers within `reach` of samples, their distances from them, both in slowness, and the samples.
 
-    In the eigenvectors of a sample ln(Φ + δ Φ') is diag(λ) + δ G to first order. The block of a pair has the
-    exponents (λ_i + λ_j + δ (G_ii + G_jj))/2 ± √D with D = (λ_i − λ_j + δ (G_ii − G_jj))²/4 + δ² G_ij G_ji. D is
+    In the eigenvectors of a sample ln(Φ + δ Φ') is diag(p) + δ G to first order. The block of a pair has the
+    exponents (p_i + p_j + δ (G_ii + G_jj))/2 ± √D with D = (p_i − p_j + δ (G_ii − G_jj))²/4 + δ² G_ij G_ji. D is
     smooth where the exponents themselves have a root, at a border, and largest in the middle of a tongue: where two
     phases would meet without the coupling.
     """

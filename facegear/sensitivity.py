@@ -5,9 +5,9 @@ equation with a further term, so that the state and its derivative together have
 
     d/dx [X, dX/dp] = [[B, 0], [dB/dp, B]] [X, dX/dp]   →   [[Φ, 0], [dΦ/dp, Φ]],
 
-which the methods of :mod:`facegear.floquet` take as any other. A simple multiplier α with the left and right
-eigenvectors y and x of Φ then changes by dα = yᴴ dΦ x / (yᴴ x), and a border of a tongue, where max|α| = 1, moves by
-dΩ/dp = −(∂|α|/∂p) / (∂|α|/∂Ω).
+which the methods of :mod:`facegear.floquet` take as any other. A simple multiplier λ with the left and right
+eigenvectors y and x of Φ then changes by dλ = yᴴ dΦ x / (yᴴ x), and a border of a tongue, where max|λ| = 1, moves by
+dΩ/dp = −(∂|λ|/∂p) / (∂|λ|/∂Ω).
 """
 
 from __future__ import annotations
@@ -305,11 +305,11 @@ class Sensitivity:
     values : array, shape (P,)
         Present values of the parameters.
     multiplier : complex
-        Multiplier α of largest modulus; of a conjugate pair the one above the real axis.
+        Multiplier λ of largest modulus; of a conjugate pair the one above the real axis.
     multiplier_derivatives : complex array, shape (P,)
-        dα/dp.
+        dλ/dp.
     growth_rate : float
-        ρ = ln|α|/T0 [1/s].
+        ρ = ln|λ|/T0 [1/s].
     growth_rate_derivatives : array, shape (P,)
         dρ/dp [1/s per unit of the parameter].
     """
@@ -323,7 +323,7 @@ class Sensitivity:
 
     @property
     def logarithmic_derivatives(self) -> Array:
-        """Derivatives of ln|α|, shape (P,): what counts at a border, where the period plays no part."""
+        """Derivatives of ln|λ|, shape (P,): what counts at a border, where the period plays no part."""
         return np.asarray((self.multiplier_derivatives / self.multiplier).real, dtype=float)
 
 
@@ -353,12 +353,12 @@ def sensitivity(
     family, values = _varied(model, speed, parameters)
     matrix, scaled = _split(family, method)
     critical, left, right = _critical(matrix, speed)
-    d_alpha = np.einsum("i,pij,j->p", left, scaled, right) / values
+    d_multiplier = np.einsum("i,pij,j->p", left, scaled, right) / values
     period = model.system(speed).period
     growth = math.log(abs(critical)) / period
     d_period = np.array([by.period for by in family._derivatives])
-    d_growth = (d_alpha / critical).real / period - growth * d_period / period
-    return Sensitivity(tuple(parameters), values, critical, d_alpha, growth, d_growth)
+    d_growth = (d_multiplier / critical).real / period - growth * d_period / period
+    return Sensitivity(tuple(parameters), values, critical, d_multiplier, growth, d_growth)
 
 
 def _critical(matrix: Array, speed: float) -> tuple[complex, ComplexArray, ComplexArray]:
@@ -384,13 +384,13 @@ def _critical(matrix: Array, speed: float) -> tuple[complex, ComplexArray, Compl
 def border_derivatives(
     model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
 ) -> Array:
-    """Differentiate the speed of a border by parameters, dΩ/dp = −(∂|α|/∂p)/(∂|α|/∂Ω).
+    """Differentiate the speed of a border by parameters, dΩ/dp = −(∂|λ|/∂p)/(∂|λ|/∂Ω).
 
     Parameters
     ----------
     model : Model
     speed : float
-        A border of a tongue [rad/s], where max|α| = 1.
+        A border of a tongue [rad/s], where max|λ| = 1.
     parameters, method
         As for :func:`transition_derivatives`; ``"speed"`` is not among them.
 
@@ -402,14 +402,14 @@ def border_derivatives(
     Raises
     ------
     ValueError
-        If the speed is not a border: max|α| differs from 1 by more than 1e-5.
+        If the speed is not a border: max|λ| differs from 1 by more than 1e-5.
     ArithmeticError
         As :func:`sensitivity`.
     """
     found = sensitivity(model, speed, (*parameters, SPEED), method)
     if abs(abs(found.multiplier) - 1.0) > _BORDER:
         raise ValueError(
-            f"speed must be a border of a tongue, where max|α| = 1; at {speed:.9g} rad/s it is "
+            f"speed must be a border of a tongue, where max|λ| = 1; at {speed:.9g} rad/s it is "
             f"{abs(found.multiplier):.9g}"
         )
     change = found.logarithmic_derivatives

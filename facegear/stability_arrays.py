@@ -169,7 +169,7 @@ def chart(
         radii = column_spectral_radii(system, 0.0, 0.0, values[:, None] * unit)
         columns.append(np.log(radii) / system.period)
     return xr.Dataset(
-        {"growth_rate": _growth(("depth", "frequency"), np.array(columns).T, "Growth rate ln max|α|/T0")},
+        {"growth_rate": _growth(("depth", "frequency"), np.array(columns).T, "Growth rate ln max|λ|/T0")},
         coords={"depth": values, "frequency": np.asarray(frequencies, dtype=float)},
         attrs={"parameters": description},
     )
@@ -247,7 +247,7 @@ def damped_charts(frequencies: ArrayLike, depths: ArrayLike, damping_ratios: Seq
     frequencies, depths : array_like
         As in :func:`chart`.
     damping_ratios : sequence of float
-        ζ [-].
+        ϑ [-].
 
     Returns
     -------
@@ -296,7 +296,7 @@ def duty_chart(frequencies: ArrayLike, duties: ArrayLike, depth: float) -> xr.Da
         for duty in finite_array("duties", duties)
     ]
     return xr.Dataset(
-        {"growth_rate": _growth(("duty", "frequency"), np.array(rows), "Growth rate ln max|α|/T0")},
+        {"growth_rate": _growth(("duty", "frequency"), np.array(rows), "Growth rate ln max|λ|/T0")},
         coords={"duty": np.asarray(duties, dtype=float), "frequency": speeds},
         attrs={"parameters": f"Meissner, depth = {depth:.10g}"},
     )

@@ -152,7 +152,7 @@ class Oscillator:
     depth : float
         ε [-], not negative.
     damping_ratio : float
-        ζ [-], from 0 to below 1.
+        ϑ [-], from 0 to below 1.
     duty : float, optional
         Of a square wave (Meissner's equation); a cosine (Mathieu's) if left out.
     """
@@ -184,7 +184,7 @@ def oscillator_study() -> Study:
     controls = (
         Choice("wave", "stiffness", (COSINE, SQUARE), COSINE),
         Quantity("depth", "depth of modulation ε", 0.0, 0.95, 0.4, 0.01, parameter="depth"),
-        Quantity("damping_ratio", "damping ratio ζ", 0.0, 0.2, 0.02, 0.002, parameter="damping_ratio"),
+        Quantity("damping_ratio", "damping ratio ϑ", 0.0, 0.2, 0.02, 0.002, parameter="damping_ratio"),
         Quantity("duty", "duty of the square wave", 0.05, 0.95, 0.5, 0.01, when=("wave", SQUARE)),
     )
     speed = Quantity("highest_speed", "parametric frequency ω/ω₀", 0.5, 5.0, 2.6, 0.1)

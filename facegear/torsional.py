@@ -1,7 +1,7 @@
 """Torsional vibration of a gearbox with a face-gear drive (chapter 7).
 
 Pinion, face gear and load are rigid bodies on torsional springs and dampers; the input side turns at a constant
-speed. The coordinates q = (ψ1, ψ2, ψo) are their elastic deviation angles (7-9). Every tooth pair is a spring and
+speed. The coordinates q = (χ1, χ2, χo) are their elastic deviation angles (7-9). Every tooth pair is a spring and
 damper on the mesh deformation g = φᵀq with φ = (r_b1, −r cos α_c, 0) (7-3), a rank-one load with its time
 derivative taken through the moving contact point, which makes the stiffness (7-13) non-symmetric.
 

@@ -187,7 +187,7 @@ def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
     Returns
     -------
     ndarray, shape (S,)
-        ln(max|α|)/T0 [1/s].
+        ln(max|λ|)/T0 [1/s].
     """
     speeds = np.asarray(rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm")))
     # A little further than asked for: a single speed is a row as well.
@@ -226,7 +226,7 @@ def growth_map(
     rows = Parallel(n_jobs=jobs)(delayed(growth_row)(model, speeds_rpm) for model in models)
     both = (figure.parameter, "speed_rpm")
     return xr.Dataset(
-        {"growth_rate": _growth(both, np.stack(rows), "Growth rate ln(max|α|)/T0")},
+        {"growth_rate": _growth(both, np.stack(rows), "Growth rate ln(max|λ|)/T0")},
         coords={figure.parameter: array, "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
         attrs={"parameters": f"{describe(base)}, swept = {figure.parameter}", "scale": figure.scale},
     )

@@ -101,7 +101,7 @@ def tongues(
         Method of :mod:`facegear.floquet`; if left out, contact-force collocation where it applies, else adaptive
         Magnus.
     threshold : float
-        Growth in a period, max|α| − 1, from which a speed counts as unstable [-]. Damping keeps stable multipliers
+        Growth in a period, max|λ| − 1, from which a speed counts as unstable [-]. Damping keeps stable multipliers
         clearly inside the unit circle; without damping they lie on it, and rounding alone must not look like growth.
     hints : sequence of float
         Further speeds [rad/s] around which to look.
@@ -112,7 +112,7 @@ def tongues(
     Returns
     -------
     tuple of Tongue
-        Ascending. Borders are where max|α| − 1 passes the threshold, to a relative 1e-9 of the speed.
+        Ascending. Borders are where max|λ| − 1 passes the threshold, to a relative 1e-9 of the speed.
 
     Raises
     ------

@@ -132,12 +132,12 @@ def rotated(body: Body, shape: PiecewiseChebyshev, angle: float) -> PiecewiseChe
     shape : PiecewiseChebyshev
         φ(r_c, θ_c).
     angle : float
-        α [rad].
+        θ_i [rad].
 
     Returns
     -------
     PiecewiseChebyshev
-        φ(r_c, θ_c + α).
+        φ(r_c, θ_c + θ_i).
     """
     if angle == 0.0:
         return shape

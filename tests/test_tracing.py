@@ -162,7 +162,7 @@ def test_tongues_are_those_of_averaging_with_the_same_labels():
 
 
 def square_wave_radii(model, speeds):
-    """max|α| of a square-wave system, from two constant state matrices in closed form."""
+    """max|λ| of a square-wave system, from two constant state matrices in closed form."""
     n = len(model.frequencies)
     product = np.eye(2 * n)
     for sign in (1.0, -1.0):

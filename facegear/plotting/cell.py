@@ -86,13 +86,13 @@ def _draw_multipliers(ax: Axes, detail: CellDetail) -> None:
     ax.plot(largest.real, largest.imag, "o", **RING)
     reach = 1.12 * max(1.0, float(np.abs(values).max()))
     ax.set(
-        xlabel=r"Re $\alpha$",
-        ylabel=r"Im $\alpha$",
+        xlabel=r"Re $\lambda$",
+        ylabel=r"Im $\lambda$",
         aspect="equal",
         xlim=(-reach, reach),
         ylim=(-reach, reach),
     )
-    ax.set_title(rf"multipliers, max $|\alpha|$ = {abs(detail.critical):.5f}", fontsize=10)
+    ax.set_title(rf"multipliers, max $|\lambda|$ = {abs(detail.critical):.5f}", fontsize=10)
 
 
 def _draw_disk(ax: Axes, deflection: xr.DataArray) -> None:

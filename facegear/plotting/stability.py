@@ -65,7 +65,7 @@ def swing(data: xr.Dataset) -> Figure:
             s=11,
             zorder=3,
         )
-    plane.set(xlabel=r"Re $\alpha$", ylabel=r"Im $\alpha$", aspect="equal", xlim=(-1.45, 1.15))
+    plane.set(xlabel=r"Re $\lambda$", ylabel=r"Im $\lambda$", aspect="equal", xlim=(-1.45, 1.15))
     plane.set_title("(a) multipliers", loc="left")
     figure.colorbar(points, ax=plane, label=r"$\omega/\omega_0$", location="bottom", shrink=0.85)
     for shown, colour, style in zip(data["shown"].values, (VERMILION, BLUE), ("-", "--"), strict=True):
@@ -284,7 +284,7 @@ def damped_chart(chart: xr.Dataset, bands: xr.Dataset, largest: float) -> Figure
     ax.plot([], [], "--", color=VERMILION, label="Hsu")
     ax.set(xlim=(float(growth["frequency"].min()), float(growth["frequency"].max())))
     ax.set_ylim(0.0, float(growth["depth"].max()))
-    ax.set_title(rf"$\zeta$ = {float(chart['damping_ratio']):.3g}", loc="left")
+    ax.set_title(rf"$\vartheta$ = {float(chart['damping_ratio']):.3g}", loc="left")
     figure.legend(loc="outside upper center", ncols=2)
     _finish_chart(figure, [ax], mesh, r"depth of modulation $\varepsilon$")
     return figure

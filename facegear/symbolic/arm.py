@@ -18,7 +18,7 @@ _RIGHT_ANGLE = {m.gamma_m: sp.pi / 2}
 
 
 def _in_pressure_angle(expression: Any) -> Any:
-    """Write an expression at γ = 90° in the local pressure angle α = φ_s + θ_0s + θ_s."""
+    """Write an expression at γ = 90° in the local pressure angle α_s = φ_s + θ_0s + θ_s."""
     at_right_angle = expression.subs(_RIGHT_ANGLE).subs(m.phi_s, m.alpha - m.theta_0s - m.theta_s)
     return sp.simplify(sp.expand_trig(at_right_angle))
 

@@ -12,9 +12,9 @@ import sympy as sp
 
 r = sp.Symbol("r", positive=True)
 theta = sp.Symbol("theta", real=True)
-n, q = sp.symbols("n q", integer=True)  # nodal diameters of test and trial function
-kappa = sp.Symbol("kappa", integer=True, nonzero=True)  # q - n
-sign = sp.Symbol("s", real=True)  # (q - n)/k, 1 or -1
+n, q = sp.symbols("n n'", integer=True)  # nodal diameters of test and trial function
+kappa = sp.Symbol("kappa", integer=True, nonzero=True)  # n′ - n
+sign = sp.Symbol("s", real=True)  # (n′ - n)/k, 1 or -1
 S_k, T_k, H_k = (sp.Function(name)(r) for name in ("S", "T", "H"))
 R_m, R_l = sp.Function("R_m")(r), sp.Function("R_l")(r)
 
@@ -34,13 +34,13 @@ class StiffnessEntry(NamedTuple):
 
 @cache
 def mean_stiffness_entry() -> StiffnessEntry:
-    """Entry of K_f^(0), q = n: the mean shear T alone."""
+    """Entry of K_f^(0), n′ = n: the mean shear T alone."""
     return _stiffness_entry((sp.S.Zero, T_k, sp.S.Zero), sp.S.One)
 
 
 @cache
 def harmonic_stiffness_entry() -> StiffnessEntry:
-    """Entry of K_f^(k), k ≥ 1, q - n = κ = sk with s = 1 or -1; all others of the harmonic vanish."""
+    """Entry of K_f^(k), k ≥ 1, n′ - n = κ = sk with s = 1 or -1; all others of the harmonic vanish."""
     # sin kθ = s sin κθ, cos kθ = cos κθ
     sine, cosine = sign * sp.sin(kappa * theta), sp.cos(kappa * theta)
     return _stiffness_entry((S_k * sine, T_k * cosine, H_k * sine), sp.exp(sp.I * kappa * theta))
@@ -54,7 +54,7 @@ def _stiffness_entry(sigma: tuple[Any, Any, Any], wave: Any) -> StiffnessEntry:
     sigma : tuple of three expressions
         σ_rr, σ_rθ, σ_θθ.
     wave : expression
-        e^{i(q-n)θ} of the entry.
+        e^{i(n′-n)θ} of the entry.
     """
     z = sp.Symbol("z", positive=True)
     trial, test = R_l * sp.exp(sp.I * q * theta), R_m * sp.exp(-sp.I * n * theta)

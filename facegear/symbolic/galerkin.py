@@ -1,6 +1,6 @@
 """Derivation of the modal equations of the face-gear disk (4-8 to 4-11) from its field equation, in SymPy.
 
-One trial term w = R_k(r) e^{iqθ} η(t) is put into the field equation (4-1), multiplied by R_m(r) e^{-inθ} and
+One trial term w = R_k(r) e^{in′θ} η(t) is put into the field equation (4-1), multiplied by R_m(r) e^{-inθ} and
 integrated over the plate. The radial functions stay functions; what is used of them is that they are sums of
 Bessel functions (4-6), clamped at the bore, and orthonormal (4-7). The same is then done for a pair of real
 coordinates, the factors of cos nθ and sin nθ.
@@ -23,10 +23,10 @@ Omega_2 = sp.Symbol("Omega_2", real=True)  # speed of the face gear [rad/s]
 xi = sp.Symbol("xi", nonnegative=True)  # viscous loss factor of the disk [s]
 m_p, c_b, k_b = sp.symbols("m_p c_b k_b", nonnegative=True)  # pinion mass, bearing damping and stiffness
 m, k = sp.symbols("m k", integer=True, nonnegative=True)  # nodal circles of test and trial function
-n, q = sp.symbols("n q", integer=True)  # wave numbers round the disk of test and trial function
+n, q = sp.symbols("n n'", integer=True)  # wave numbers round the disk of test and trial function
 sigma_r = sp.Function("sigma_r")(r)  # centrifugal stresses (4-2) [Pa]
 sigma_theta = sp.Function("sigma_theta")(r)
-R_m, R_k = sp.Function("R_m", real=True), sp.Function("R_k", real=True)  # R_mn and R_kq [1/m]
+R_m, R_k = sp.Function("R_m", real=True), sp.Function("R_k", real=True)  # R_mn and R_kn′ [1/m]
 eta = sp.Function("eta")  # trial coordinate
 a_n, b_n = sp.Function("a_n", real=True), sp.Function("b_n", real=True)  # factors of √2 cos nθ and √2 sin nθ
 
@@ -62,17 +62,17 @@ def laplacian(w: Any) -> Any:
 
 @cache
 def mode_laplacians() -> tuple[Any, Any]:
-    """∇²w/w for w = f(r) e^{iqθ}, f = J_q, Y_q of βr and f = I_q, K_q of βr; from Bessel's equations.
+    """∇²w/w for w = f(r) e^{in′θ}, f = J_n′, Y_n′ of βr and f = I_n′, K_n′ of βr; from Bessel's equations.
 
     Returns
     -------
     tuple of two expressions
-        -β² and β²: every R(r) e^{iqθ} of the form (4-6) therefore has ∇⁴w = β⁴w.
+        -β² and β²: every R(r) e^{in′θ} of the form (4-6) therefore has ∇⁴w = β⁴w.
     """
     factors = []
     f = sp.Function("f")(r)
     for sign in (1, -1):
-        # r²f'' + r f' + (± β² r² - q²) f = 0
+        # r²f'' + r f' + (± β² r² - n′²) f = 0
         second = -sp.diff(f, r) / r - (sign * beta**2 - q**2 / r**2) * f
         w = f * sp.exp(sp.I * q * theta)
         factors.append(sp.simplify((laplacian(w) / w).doit().subs(sp.diff(f, r, 2), second)))
@@ -104,7 +104,7 @@ def mesh_load_terms(w: Any) -> Any:
 
 @cache
 def angular_integral() -> Any:
-    """∫₀^{2π} e^{i(q-n)θ} dθ = 2π δ_nq for integers n and q."""
+    """∫₀^{2π} e^{i(n′-n)θ} dθ = 2π δ_nn′ for integers n and n′."""
     unequal = sp.Symbol("d", integer=True, nonzero=True)
     vanishing = sp.simplify(sp.integrate(sp.exp(sp.I * unequal * theta), (theta, 0, 2 * sp.pi)))
     if vanishing != 0:
@@ -174,7 +174,7 @@ def disk_coefficients() -> tuple[Any, Any, Any]:
 
 @cache
 def load_entry() -> Any:
-    """Entry e^{i(q-n)θ_c} R_m(r_c) R_k(r_c)/(2πρh) of (4-8) that m_p, c_b and k_b share."""
+    """Entry e^{i(n′-n)θ_c} R_m(r_c) R_k(r_c)/(2πρh) of (4-8) that m_p, c_b and k_b share."""
     trial = R_k(r) * sp.exp(sp.I * q * theta) * eta(t)
     test = R_m(r) * sp.exp(-sp.I * n * theta) / (2 * sp.pi * rho * h)
     # The delta functions reach over the plate, so the limits do not matter.
@@ -186,7 +186,7 @@ def load_entry() -> Any:
 
 @cache
 def galerkin_entries() -> ModalEntries:
-    """Modal equation of test function (m, n) and trial function (k, q): the entries of (4-8) to (4-11).
+    """Modal equation of test function (m, n) and trial function (k, n′): the entries of (4-8) to (4-11).
 
     Returns
     -------

@@ -8,8 +8,8 @@ are written with slowly varying amplitudes, averaged over the two fast phases, m
 transformation and reduced to a growth rate. Nothing is assumed about which terms survive: a harmonic is a
 power of exp(iω_k t), exp(iω_j t) and exp(iΛt), and averaging picks the power zero of the first two.
 
-The small parameter ε is absorbed into the coefficients, and Λ = ε s λ is the detuning of the s-th multiple of
-the parametric frequency ω: sω = ω_k + ω_j + Λ (sum, 2-21), sω = ω_j − ω_k + Λ (difference, j > k), and
+The small parameter ε is absorbed into the coefficients, and Λ (ε s λ in the text) is the detuning of the s-th
+multiple of the parametric frequency ω: sω = ω_k + ω_j + Λ (sum, 2-21), sω = ω_j − ω_k + Λ (difference, j > k), and
 sω = 2ω_k + Λ (a single frequency, the sum with k = j). The superscript s of the text is left out.
 """
 
@@ -27,7 +27,7 @@ Kind = Literal["sum", "difference", "single"]
 TIME: Final = sp.Symbol("t", real=True)
 OMEGA: Final = {i: sp.Symbol(f"omega_{i}", positive=True) for i in "kj"}
 DETUNING: Final = sp.Symbol("Lambda", real=True)
-PARAMETRIC_PHASE: Final = sp.Symbol("psi", real=True)
+PARAMETRIC_PHASE: Final = sp.Symbol("Theta", real=True)
 # Slow amplitudes A_i, B_i of 2-18, and their complex combinations 2-24.
 A: Final = {i: sp.Symbol(f"A_{i}", real=True) for i in "kj"}
 B: Final = {i: sp.Symbol(f"B_{i}", real=True) for i in "kj"}
@@ -56,10 +56,10 @@ class Derivation:
     kind : {"sum", "difference", "single"}
         Which combination of natural frequencies sω is close to.
     right_hand_side : dict
-        2-16, per coordinate: what stands right of q̈_i + ω_i² q_i once 2-18 is put in; phases ω_i t and ψ = sωt.
+        2-16, per coordinate: what stands right of q̈_i + ω_i² q_i once 2-18 is put in; phases ω_i t and Θ = sωt.
     harmonics : dict
-        2-20, per pair (i, j): H1, H2, H3, H4, the amplitudes of cos(ω_j t+ψ), cos(ω_j t−ψ), sin(ω_j t+ψ),
-        sin(ω_j t−ψ) in −2 × the right-hand side.
+        2-20, per pair (i, j): H1, H2, H3, H4, the amplitudes of cos(ω_j t+Θ), cos(ω_j t−Θ), sin(ω_j t+Θ),
+        sin(ω_j t−Θ) in −2 × the right-hand side.
     resonant : dict
         2-22, per coordinate: the part of the right-hand side that oscillates at ω_i within the detuning.
     variation : dict
@@ -77,7 +77,7 @@ class Derivation:
     characteristic : sympy.Expr
         det(μI − block), the symbol μ being ``sympy.Symbol("mu")``.
     xi, eta : sympy.Expr
-        Real and imaginary part of 16 × the discriminant (tr/2)² − det: α and β of 2-27 and 2-28.
+        Real and imaginary part of 16 × the discriminant (tr/2)² − det, Γ_r and Γ_i; 2-27 and 2-28 call them α and β.
     growth_rate : sympy.Expr
         Largest real part of μ [1/s]; unstable where it is positive (2-26).
     """
@@ -125,8 +125,8 @@ class Derivation:
         rows.append(("2-25", "autonomous matrix", self.autonomous_matrix))
         rows.append(("2-26", "characteristic equation", sp.Eq(self.characteristic, 0)))
         number = "2-28" if self.kind == "difference" else "2-27"
-        rows.append((number, "α", sp.Eq(sp.Symbol("alpha"), self.xi)))
-        rows.append((number, "β", sp.Eq(sp.Symbol("beta"), self.eta)))
+        rows.append((number, "Γ_r", sp.Eq(sp.Symbol("Gamma_r"), self.xi)))
+        rows.append((number, "Γ_i", sp.Eq(sp.Symbol("Gamma_i"), self.eta)))
         rows.append(("2-26", "growth rate", sp.Eq(sp.Symbol("sigma"), self.growth_rate)))
         return tuple(rows)
 
@@ -195,7 +195,7 @@ def _forcing(i: str, coordinates: str) -> sp.Expr:
 
 
 def _harmonic_amplitudes(forcing: sp.Expr, j: str) -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]:
-    """H1…H4 of 2-20: amplitudes of cos and sin of ω_j t ± ψ in −2 × the forcing."""
+    """H1…H4 of 2-20: amplitudes of cos and sin of ω_j t ± Θ in −2 × the forcing."""
     pairs = []
     for sign in (1, -1):
         up, down = (

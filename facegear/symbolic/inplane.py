@@ -24,7 +24,7 @@ theta, t = sp.symbols("theta t", real=True)
 nu = sp.Symbol("nu", positive=True)  # Poisson's ratio
 Omega = sp.Symbol("Omega", positive=True)  # Ω* (6-1)
 k = sp.Symbol("k", integer=True, nonnegative=True)  # harmonic
-beta = sp.Symbol("beta", positive=True)
+beta = sp.Symbol("beta_k", positive=True)
 U, V, P, Q = (sp.Function(name)(r) for name in "UVPQ")
 phi, psi = (sp.Function(name)(r, theta) for name in ("phi_L", "psi_L"))
 Phi, Psi = (sp.Function(name)(r) for name in ("Phi", "Psi"))

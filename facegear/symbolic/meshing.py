@@ -28,11 +28,11 @@ gamma, gamma_m = sp.symbols("gamma gamma_m", positive=True)  # shaft angle and i
 m_2s = sp.Symbol("m_2s", positive=True)  # gear ratio N_s/N_2
 Omega_s = sp.Symbol("Omega_s", positive=True)  # speed of the shaper [rad/s]
 delta = sp.Symbol("delta", real=True)  # rotation of the shaper since a point was generated [rad]
-alpha, alpha_c = sp.symbols("alpha alpha_c", positive=True)  # local and nominal pressure angle [rad]
+alpha, alpha_c = sp.symbols("alpha_s alpha_c", positive=True)  # local and nominal pressure angle [rad]
 N_s = sp.Symbol("N_s", positive=True)  # number of shaper teeth
 t = sp.Symbol("t", real=True)  # tangent of the local pressure angle
-p = sp.Symbol("p", positive=True)  # m_2s sin(gamma_m)
-q = sp.Symbol("q", positive=True)  # 1 - m_2s cos(gamma_m)
+p = sp.Symbol("p_1", positive=True)  # m_2s sin(gamma_m)
+q = sp.Symbol("p_2", positive=True)  # 1 - m_2s cos(gamma_m)
 
 
 @cache
@@ -204,7 +204,7 @@ def undercut_determinants_on_meshing() -> tuple[Any, Any, Any]:
 def _on_meshing(expression: Any) -> Any:
     """Restrict to f = 0 and to algebraic symbols; polynomial steps only, a fraction of a second."""
     # Sines and cosines of the two independent angles become symbols before anything is expanded.
-    whole = sp.Symbol("beta", real=True)  # θ0s + θs
+    whole = sp.Symbol("whole", real=True)  # θ0s + θs
     cosine = sp.Symbol("cosine", positive=True)  # of the local pressure angle φs + θ0s + θs
     c, s = sp.symbols("c s", real=True)
     algebraic = expression.subs(u_s, q * r_bs / (p * cosine))
@@ -241,7 +241,7 @@ def undercut_condition() -> Any:
     """Left side minus right side of the condition of undercutting, a polynomial of degree four in t.
 
     The factor of Δ2 (and of Δ3) that can vanish, at the shaper's addendum circle θ_s = θ_s* (3-12):
-    p² θ* (θ* − t) = q t (1 + t²) [(1 − q) θ* + q t], with t the tangent of φ_s* + θ_0s + θ_s*.
+    p1² θ* (θ* − t) = p2 t (1 + t²) [(1 − p2) θ* + p2 t], with t the tangent of φ_s* + θ_0s + θ_s*.
     """
     second = undercut_determinants_on_meshing()[1]
     numerator = sp.fraction(sp.together(second))[0]
@@ -268,15 +268,15 @@ def undercut_position() -> Any:
 
 @cache
 def inner_limit() -> Any:
-    """Inner limit L1 along the shaper's axis (3-13) [m], from t, p, q and the shaft angle γ."""
+    """Inner limit L1 along the shaper's axis (3-13) [m], from t, p1, p2 and the shaft angle γ."""
     return undercut_position() - r_ds / sp.tan(gamma)
 
 
 @cache
 def contact_point() -> Any:
-    """Contact point in the space-fixed Γp, shape (3, 1) [m], from the local pressure angle α and θ_s.
+    """Contact point in the space-fixed Γp, shape (3, 1) [m], from the local pressure angle α_s and θ_s.
 
-    u_s is eliminated by f = 0 and φ_s by α = φ_s + θ_0s + θ_s, γ_m by γ: −y_p is the distance from the face
+    u_s is eliminated by f = 0 and φ_s by α_s = φ_s + θ_0s + θ_s, γ_m by γ: −y_p is the distance from the face
     gear's axis along the plane of the two axes, −z_p the distance below the shaper's axis at γ = 90°.
     """
     position = rotation_pm() * (rotation_ms() * shaper_surface())
@@ -303,9 +303,9 @@ def returned_point() -> Any:
 
 @cache
 def contact_line_speed() -> Any:
-    """Arc length of the contact line per unit of local pressure angle at constant φ_s, ds/dα [m].
+    """Arc length of the contact line per unit of local pressure angle at constant φ_s, ds/dα_s [m].
 
-    In Γs, where the shaper and the contact line lie still: θ_s and α grow together.
+    In Γs, where the shaper and the contact line lie still: θ_s and α_s grow together.
     """
     position = shaper_surface().subs(u_s, meshing_position())
     # At constant φ_s the roll angle is the only variable left.
@@ -317,17 +317,17 @@ def contact_line_speed() -> Any:
 
 @cache
 def pointing_cone_angle_cotangent() -> Any:
-    """Cot γ_s of the shaper's pitch cone (3-16): u_s cos α / r_bs where f = 0, in m_2s and γ."""
+    """Cot γ_s of the shaper's pitch cone (3-16): u_s cos α_s / r_bs where f = 0, in m_2s and γ."""
     at_rest = meshing_position().subs(phi_s, alpha - theta_0s - theta_s).subs(gamma_m, sp.pi - gamma)
     return sp.cancel(sp.cos(alpha) * at_rest / r_bs)
 
 
 @cache
 def pointing_condition() -> Any:
-    """Left side minus right side of the condition of pointing (3-15): α − (r_top/r_bs) sin α − θ_0s.
+    """Left side minus right side of the condition of pointing (3-15): α_s − (r_top/r_bs) sin α_s − θ_0s.
 
     In the section Π2 normal to the shaper's axis the face-gear flank is replaced by its tangent at φ_s = 0,
-    where α = θ_0s + θ_s. Both flanks' tangents meet in the tooth's plane of symmetry (x = 0); pointing is
+    where α_s = θ_0s + θ_s. Both flanks' tangents meet in the tooth's plane of symmetry (x = 0); pointing is
     where that happens at the tooth top, y = −r_top. With r_top = (N_s − 2)/(2 P_d) this is (3-15).
     """
     surface, normal = shaper_surface(), shaper_normal()

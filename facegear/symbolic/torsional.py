@@ -37,8 +37,8 @@ PAIRS = (1, 2)
 RADII: tuple[Any, ...] = tuple(sp.Function(f"r_{i}", positive=True)(t) for i in PAIRS)
 """r_k(t_i), radius of the contact point of each pair [m]."""
 
-COORDINATES: tuple[Any, ...] = tuple(sp.Function(name, real=True)(t) for name in ("psi_1", "psi_2", "psi_o"))
-"""ψ1, ψ2, ψo: elastic deviation angles of pinion, face gear and load (7-9) [rad]."""
+COORDINATES: tuple[Any, ...] = tuple(sp.Function(name, real=True)(t) for name in ("chi_1", "chi_2", "chi_o"))
+"""χ1, χ2, χo: elastic deviation angles of pinion, face gear and load, ψ1, ψ2, ψo in (7-9) [rad]."""
 
 
 class Matrices(NamedTuple):
@@ -67,15 +67,15 @@ class FourierCoefficients(NamedTuple):
 
 
 def deformation(radius: Any) -> Any:
-    """Mesh deformation g = r_b1 ψ1 − r cos α_c ψ2 of a pair in contact (7-3) [m]."""
+    """Mesh deformation g = r_b1 χ1 − r cos α_c χ2 of a pair in contact (7-3) [m]."""
     return r_b1 * COORDINATES[0] - radius * sp.cos(alpha_c) * COORDINATES[1]
 
 
 @cache
 def kinetic_energy() -> Any:
     """T of input side, pinion, face gear and load, with the total angles (7-7) put in (7-4) [J]."""
-    psi_1, psi_2, psi_o = COORDINATES
-    angles = (Omega * t, Omega * t + psi_1, m_21 * Omega * t + psi_2, m_21 * Omega * t + psi_o)
+    chi_1, chi_2, chi_o = COORDINATES
+    angles = (Omega * t, Omega * t + chi_1, m_21 * Omega * t + chi_2, m_21 * Omega * t + chi_o)
     inertias = (J_m, J_1, J_2, J_o)
     return sum(inertia * angle.diff(t) ** 2 / 2 for inertia, angle in zip(inertias, angles, strict=True))
 
@@ -83,17 +83,17 @@ def kinetic_energy() -> Any:
 @cache
 def strain_energy() -> Any:
     """V of both shafts and of the tooth pairs (7-5) [J]."""
-    psi_1, psi_2, psi_o = COORDINATES
+    chi_1, chi_2, chi_o = COORDINATES
     mesh = sum(deformation(radius) ** 2 for radius in RADII)
-    return k_1 * psi_1**2 / 2 + k_2 * (psi_2 - psi_o) ** 2 / 2 + k_m * mesh / 2
+    return k_1 * chi_1**2 / 2 + k_2 * (chi_2 - chi_o) ** 2 / 2 + k_m * mesh / 2
 
 
 @cache
 def dissipation() -> Any:
     """Rayleigh's dissipation function of both shafts and of the tooth pairs (7-6) [W]."""
-    psi_1, psi_2, psi_o = COORDINATES
+    chi_1, chi_2, chi_o = COORDINATES
     mesh = sum(deformation(radius).diff(t) ** 2 for radius in RADII)
-    return c_1 * psi_1.diff(t) ** 2 / 2 + c_2 * (psi_2 - psi_o).diff(t) ** 2 / 2 + c_m * mesh / 2
+    return c_1 * chi_1.diff(t) ** 2 / 2 + c_2 * (chi_2 - chi_o).diff(t) ** 2 / 2 + c_m * mesh / 2
 
 
 @cache

@@ -79,7 +79,7 @@ def integrals(n, T0, kernel):
 
 
 def log_radius(n, speed_rpm, depth=1.0):
-    """Ln max|α|, with the variation of C and K multiplied by the depth."""
+    """Ln max|λ|, with the variation of C and K multiplied by the depth."""
     if depth == 1.0:
         return math.log(torsional_switching.spectral_radius(n, speed_rpm, rtol=RTOL))
     T0 = 60.0 / (n.N2 * speed_rpm)
@@ -103,7 +103,7 @@ def growth(n, speed_rpm, depth=1.0):
 
 
 def border(n, near_rpm, step=0.02):
-    """Speed at which a damped ln max|α| passes zero, on a parabola through three values around it."""
+    """Speed at which a damped ln max|λ| passes zero, on a parabola through three values around it."""
     speeds = near_rpm + step * np.array([-1.0, 0.0, 1.0])
     values = [log_radius(n, speed) for speed in speeds]
     roots = np.roots(np.polyfit(speeds - near_rpm, values, 2))
@@ -111,7 +111,7 @@ def border(n, near_rpm, step=0.02):
 
 
 def undamped_border(n, lower_rpm, upper_rpm, depth, side):
-    """Border where ln max|α| starts like a square root: its square is smooth inside the tongue."""
+    """Border where ln max|λ| starts like a square root: its square is smooth inside the tongue."""
     width = upper_rpm - lower_rpm
     share = np.array([0.01, 0.02, 0.03, 0.04])
     speeds = lower_rpm + share * width if side == "lower" else upper_rpm - share * width
