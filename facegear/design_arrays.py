@@ -16,14 +16,14 @@ from facegear.geometry import DEDENDUM, Drive
 from facegear.kinematics import ContactPath, SkewLine
 from facegear.lobes import CriticalThickness, Lobe, highest_lobes
 from facegear.models import replace_parameter
-from facegear.parameters import FloatArray, integer_at_least, rpm
+from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
 from facegear.reference import variable
 from facegear.tooth_design import root_stress, root_thickness, tooth_thickness
 from facegear.tracing import tongues
 from facegear.transverse import Transverse, shape_vector
-from facegear.transverse_arrays import growth_map, tongue_sections
+from facegear.transverse_arrays import describe, growth_map, tongue_sections
 
 # Tips are traced to 1e-5 in h/a; the speed of a maximum follows to the root of the accuracy of its height.
 _RATIO, _TIP_SPEED = 2e-5, 0.5
@@ -414,6 +414,62 @@ def critical_of_variants(
             "parameters": ", ".join(
                 f"{rpm(lowest_speed):.6g} to {highest:.6g} rpm" for highest in highest_rpm
             ),
+            "variants": "; ".join(models),
+        },
+    )
+
+
+def tips_in_windows(
+    models: Mapping[str, Transverse],
+    windows_rpm: Sequence[tuple[float, float]],
+    thickness_range: tuple[float, float],
+    jobs: int = 2,
+) -> xr.Dataset:
+    """Highest tip of a lobe in each of several windows of speed, for models that differ by their basis.
+
+    Parameters
+    ----------
+    models : mapping of str to Transverse
+        At any thickness.
+    windows_rpm : sequence of (float, float)
+        Lowest and highest speed of each window [rpm]; narrow ones make a fine basis affordable.
+    thickness_range : tuple of float
+        As for :func:`facegear.lobes.highest_lobes`.
+    jobs : int
+        Number of processes.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``tip_ratio`` [-] and ``tip_speed`` [rpm] over (variant, window), ``circles`` and ``diameters`` over variant;
+        names in the attribute ``variants``.
+    """
+    from joblib import Parallel, delayed
+
+    ends = [tuple(float(end) for end in rad_per_s(np.array(window))) for window in windows_rpm]
+    found = Parallel(n_jobs=jobs)(
+        delayed(_critical)(model, low, (high,), thickness_range)
+        for model in models.values()
+        for low, high in ends
+    )
+    lobes = [critical.lobe for (critical,) in found]
+    shape, both = (len(models), len(windows_rpm)), ("variant", "window")
+    ratios = np.reshape([lobe.thickness_ratio for lobe in lobes], shape)
+    speeds = np.reshape([float(rpm(lobe.speed)) for lobe in lobes], shape)
+    circles = [model.body.nodal_circles for model in models.values()]
+    diameters = [model.body.nodal_diameters for model in models.values()]
+    return xr.Dataset(
+        {
+            "tip_ratio": variable(both, ratios, "h/a of the highest tip of a lobe", "1", atol=_RATIO),
+            "tip_speed": variable(both, speeds, "Speed of the tip", "rpm", atol=_TIP_SPEED),
+            "circles": variable("variant", circles, "Largest number of nodal circles", "1"),
+            "diameters": variable("variant", diameters, "Largest number of nodal diameters", "1"),
+        },
+        coords={"variant": np.arange(len(models)), "window": np.arange(len(windows_rpm))},
+        attrs={
+            "parameters": "windows "
+            + ", ".join(f"{low:.6g} to {high:.6g} rpm" for low, high in windows_rpm)
+            + f"; {describe(next(iter(models.values())))}",
             "variants": "; ".join(models),
         },
     )

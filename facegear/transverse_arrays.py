@@ -7,9 +7,10 @@ that shows as 1e-4 of a growth rate per second.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import xarray as xr
@@ -17,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from facegear.hsu import band_speeds
 from facegear.maps import stability_map
+from facegear.modal import modal_expansion
 from facegear.models import replace_parameter
 from facegear.parameters import integer_at_least, rad_per_s, rpm
 from facegear.reference import filled_rows, label_lines, variable
@@ -123,11 +125,13 @@ def unstable_share(chart: xr.Dataset) -> float:
     return float((chart["growth_rate"] > 0.0).mean())
 
 
-def safe_limit(model: Transverse, chart: xr.Dataset, lowest_rpm: float, *, above: bool) -> float | None:
-    """Value of the swept parameter beyond which a map is stable at all speeds.
+def tongue_free(model: Transverse, chart: xr.Dataset, lowest_rpm: float) -> tuple[tuple[float, float], ...]:
+    """Windows of the swept parameter in which no tongue is found at any speed.
 
-    A grid of speeds can miss a narrow tongue, so rows that look safe are searched for tongues between
-    `lowest_rpm` and the highest speed, starting from the last row of the map that is unstable.
+    A grid of speeds can miss a narrow tongue. So runs of rows without an unstable cell are searched for tongues
+    between `lowest_rpm` and the highest speed: from both ends of a run inwards until a row has none, and once in the
+    middle between the two. What can be missed is a tongue that opens and closes between the rows searched and
+    between the columns of the map. Nothing is said of values beyond the axis.
 
     Parameters
     ----------
@@ -137,28 +141,92 @@ def safe_limit(model: Transverse, chart: xr.Dataset, lowest_rpm: float, *, above
         From :func:`growth_map`.
     lowest_rpm : float
         Lowest speed of the face gear at which tongues are searched for [rpm].
-    above : bool
-        Whether the safe zone is looked for at the upper or the lower end of the axis.
 
     Returns
     -------
-    float or None
-        A value of the axis that is safe, close to the first one, or None if none was found.
+    tuple of (float, float)
+        First and last value of the axis found free, ascending. Runs shorter than a thirtieth of the axis are left out.
     """
     growth = chart["growth_rate"]
     name = str(growth.dims[0])
-    values = growth[name].values
-    order = np.arange(values.size) if above else np.arange(values.size)[::-1]
-    unstable = np.flatnonzero((growth.values[order] > 0.0).any(axis=1))
+    values = growth[name].values.tolist()
     low, high = rad_per_s(lowest_rpm), rad_per_s(float(growth["speed_rpm"][-1]))
-    # A search is dear: the steps from the last unstable row double, and end with the last row of all.
-    first = int(unstable.max(initial=-1)) + 1
-    rows = {first + 2**power - 1 for power in range(16)} | {values.size - 1}
-    for row in sorted(row for row in rows if first <= row < values.size):
-        value = float(values[order[row]])
-        if not tongues(replace_parameter(model, name, value), low, high):
-            return value
-    return None
+
+    @cache
+    def free(row: int) -> bool:
+        return not tongues(replace_parameter(model, name, values[row]), low, high)
+
+    stable = np.concatenate([[False], ~(growth.values > 0.0).any(axis=1), [False]])
+    starts, stops = np.flatnonzero(stable[1:] & ~stable[:-1]), np.flatnonzero(~stable[1:] & stable[:-1]) - 1
+    found = []
+    for start, stop in zip(starts.tolist(), stops.tolist(), strict=True):
+        if stop - start < max(1, len(values) // 30):
+            continue
+        first, last = _first_free(free, start, stop, 1), _first_free(free, stop, start, -1)
+        if first is not None and last is not None and first < last and free((first + last) // 2):
+            found.append((values[first], values[last]))
+    return tuple(found)
+
+
+def _first_free(free: Callable[[int], bool], start: int, stop: int, step: int) -> int | None:
+    """First row from `start` that is free: steps that double, for a search is dear, then halves of the last one."""
+    offsets = [2**power - 1 for power in range(16) if 2**power - 1 < abs(stop - start)] + [abs(stop - start)]
+    there = next((offset for offset in offsets if free(start + step * offset)), None)
+    if there is None:
+        return None
+    before = max((offset for offset in offsets if offset < there), default=there - 1)
+    while there - before > 1:
+        middle = (there + before) // 2
+        there, before = (middle, before) if free(start + step * middle) else (there, middle)
+    return start + step * there
+
+
+def resonances_of_bearing(
+    model: Transverse, values: ArrayLike, speeds_rpm: tuple[float, float]
+) -> xr.Dataset:
+    """Tongues at some bearing stiffnesses, with the frequencies that combine and the one of pinion and bearing.
+
+    Parameters
+    ----------
+    model : Transverse
+    values : array_like
+        Bearing stiffnesses μ.
+    speeds_rpm : tuple of float
+        Lowest and highest speed of the face gear [rpm].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``tongue``: ``stiffness``; ``peak`` [rpm]; ``first`` and ``second``, the natural frequencies ω_k and ω_j of
+        the mean system there [Hz]; ``sign``, 1 for a sum and −1 for a difference; ``bearing``, √(k_b/m_p) [Hz].
+    """
+    low, high = (float(speed) for speed in rad_per_s(np.asarray(speeds_rpm)))
+    rows = []
+    for value in np.asarray(values, dtype=float).tolist():
+        softened = replace_parameter(model, "stiffness", value)
+        bearing = math.sqrt(softened.bearing_stiffness / softened.pinion_mass)
+        for tongue in tongues(softened, low, high):
+            named = tongue.combination
+            modes = modal_expansion(softened.system(tongue.peak), 1).frequencies
+            pair = modes[named.k - 1], modes[named.j - 1]
+            hertz = [float(omega) / (2.0 * math.pi) for omega in (*pair, bearing)]
+            rows.append((value, float(rpm(tongue.peak)), *hertz, 1.0 if named.kind == "sum" else -1.0))
+    stiffness, peak, first, second, own, sign = np.array(rows).reshape(-1, 6).T
+    number = partial(variable, "tongue")
+    return xr.Dataset(
+        {
+            "stiffness": number(stiffness, "Bearing stiffness", "1"),
+            "peak": number(peak, "Speed of the largest growth", "rpm", atol=0.1),
+            "first": number(
+                first, "Lower natural frequency of the mean system that combines", "Hz", atol=0.01
+            ),
+            "second": number(second, "Higher one", "Hz", atol=0.01),
+            "sign": number(sign, "1 for a sum, -1 for a difference", "1"),
+            "bearing": number(own, "Frequency of the pinion on its bearing", "Hz", rtol=1e-9),
+        },
+        coords={"tongue": np.arange(len(rows))},
+        attrs={"parameters": f"{describe(model)}, swept = stiffness"},
+    )
 
 
 def tongue_sections(

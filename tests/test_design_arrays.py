@@ -105,6 +105,16 @@ def test_critical_of_variants_and_tips():
     assert float(tipped["tip_speed"][0]) == pytest.approx(95.49297)
 
 
+def test_tips_in_windows_are_those_of_an_independent_route():
+    # data/anchors/ch04_figure_4_10.yaml: complex exponentials and DOP853
+    data = design_arrays.tips_in_windows(
+        {"printed": MODEL}, [(164.0, 192.0), (740.0, 860.0)], (0.0355, 0.0405), jobs=1
+    )
+    np.testing.assert_allclose(data["tip_ratio"], [[0.0376137, 0.0394525]], rtol=0, atol=2e-5)
+    assert (int(data["circles"][0]), int(data["diameters"][0])) == (1, 3)
+    assert data.attrs["variants"] == "printed"
+
+
 def test_thickness_figure_has_cells_tongues_and_tips_of_the_model():
     lobe = Lobe(0.03945, float(rad_per_s(834.0)), "(1+9)/1")
     data = design_arrays.thickness_figure(
@@ -130,5 +140,5 @@ def test_thickness_figure_has_cells_tongues_and_tips_of_the_model():
     words = {text.get_text() for text in figure.axes[0].texts}
     widest = data["upper"] - data["lower"]
     label = data.attrs["labels"].split("\n")[0].split()[int(widest[0].argmax("tongue"))]
-    assert {"safe zone", "response-\nunsafe\nzone", "B (1+9)/1: 0.0394", f"C {label}"} <= words
+    assert {"no tongue found", "response-\nunsafe\nzone", "B (1+9)/1: 0.0394", f"C {label}"} <= words
     assert dict(mpl.rcParams) == before

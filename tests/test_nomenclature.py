@@ -77,7 +77,9 @@ def test_letter_has_one_meaning_in_the_chapters(pattern: str) -> None:
     assert where <= ALLOWED[pattern]
 
 
-@pytest.mark.parametrize("text", ["|α|", "e^{λ", "(λt", "∂α", "Re $\\alpha", "ζ ω0", "ζω0", "sin k(θ-α)", "r_b1 ψ1"])
+@pytest.mark.parametrize(
+    "text", ["|α|", "e^{λ", "(λt", "∂α", "Re $\\alpha", "ζ ω0", "ζω0", "sin k(θ-α)", "r_b1 ψ1"]
+)
 def test_package_calls_things_by_the_names_of_the_page(text: str) -> None:
     sources = (PAGE.parents[1] / "facegear").rglob("*.py")
     assert [path.name for path in sources if text in path.read_text(encoding="utf-8")] == []

@@ -56,16 +56,41 @@ def test_traced_borders_have_no_growth(figure):
     assert growth_rate(model.system(peak)) == pytest.approx(float(section["largest_growth"][0]), rel=1e-6)
 
 
-def test_safe_limit_finds_what_lies_between_the_speeds_of_a_map():
-    # A map that sees nothing of the tongues.
-    blind = xr.DataArray(
-        np.full((3, 1), -1.0),
-        dims=("stiffness", "speed_rpm"),
-        coords={"stiffness": [0.25, 1.0, 1.9], "speed_rpm": [600.0]},
+def blind_chart(parameter, values):
+    """Return a map that sees nothing of the tongues."""
+    growth = xr.DataArray(
+        np.full((len(values), 1), -1.0),
+        dims=(parameter, "speed_rpm"),
+        coords={parameter: values, "speed_rpm": [620.0]},
     )
-    chart = xr.Dataset({"growth_rate": blind})
-    assert arrays.safe_limit(MODEL, chart, 500.0, above=True) == 1.9
-    assert arrays.safe_limit(MODEL, chart.isel(stiffness=[0, 1]), 500.0, above=True) is None
+    return xr.Dataset({"growth_rate": growth})
+
+
+def test_windows_end_where_a_search_finds_what_lies_between_the_speeds_of_a_map():
+    values = [0.25, 1.0, 1.8, 1.9, 2.0, 2.3, 3.0]
+    # Above the window differences with the lowest modes open, near 400 rpm; a map of one speed sees neither kind.
+    ((low, high),) = arrays.tongue_free(MODEL, blind_chart("stiffness", values), 350.0)
+    assert (low, high) == (1.8, 2.0)
+    assert arrays.tongue_free(MODEL, blind_chart("stiffness", values[:2]), 500.0) == ()
+    assert arrays.tongue_free(MODEL, blind_chart("stiffness", values[-2:]), 350.0) == ()
+
+
+def test_unstable_rows_part_the_windows():
+    chart = blind_chart("stiffness", [1.8, 1.85, 1.9, 1.95, 2.0])
+    chart["growth_rate"][2] = 1.0
+    assert arrays.tongue_free(MODEL, chart, 500.0) == ((1.8, 1.85), (1.95, 2.0))
+
+
+@pytest.mark.parametrize(
+    ("number", "kinds"), [("4.4a", {0.5: 1.0, 4.0: -1.0}), ("4.5a", {0.6: 1.0, 1.8: -1.0})]
+)
+def test_sums_need_both_frequencies_on_one_side_of_the_bearing_and_differences_one_on_each(number, kinds):
+    found = arrays.resonances_of_bearing(FIGURES[number].model(), list(kinds), (350.0, 620.0))
+    sides = (found["first"] - found["bearing"]) * (found["second"] - found["bearing"])
+    assert found.sizes["tongue"] >= 4
+    np.testing.assert_array_equal(np.sign(sides), found["sign"])
+    for value, sign in kinds.items():
+        assert set(found["sign"].values[found["stiffness"] == value]) == {sign}
 
 
 def test_share_and_intervals_of_known_growth():
@@ -103,10 +128,13 @@ def test_small_arrays_survive_their_files(tmp_path):
 
 def test_drawings_carry_their_labels(figure, line):
     before = dict(mpl.rcParams)
-    shown = texts(draw.stability_maps({"(a) map": figure}, {"(a) map": 1.9}))
-    assert "safe zone" in shown
+    shown = texts(draw.stability_maps({"(a) map": figure}, {"(a) map": ((1.8, 2.0),)}))
+    assert "no tongue found" in shown
     assert figure.attrs["labels"].split()[0] in shown
-    assert "safe zone" not in texts(draw.stability_maps({"(a) map": figure}, {"(a) map": None}))
+    assert "no tongue found" not in texts(draw.stability_maps({"(a) map": figure}, {"(a) map": ()}))
+    wide = texts(draw.wide_maps({"I": figure}, {"I": ((1.8, 2.0),)}, {"I": {"a line": 1.0}}))
+    assert "a line" in wide
+    assert "no tongue found" in wide
     assert "second" in texts(draw.compared_maps({"first": figure, "second": figure}))
     assert "alone" in texts(draw.one_map(figure, "alone", 10.0))
     assert "$N$ = 2" in texts(draw.convergence(line))

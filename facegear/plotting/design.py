@@ -103,10 +103,10 @@ def _finish(ax: Axes) -> None:
 
 
 def _draw_zones(ax: Axes, chart: xr.Dataset) -> None:
-    """Name the safe zone above all tips, lobe C, and the zone below it, where a thin disk responds too much."""
+    """Name what lies above all tips, lobe C, and the zone below it, where a thin disk responds too much."""
     bottom, top = ax.get_ylim()
     critical = float(chart["tip_ratio"].max())
-    ax.text(12, (critical + top) / 2, "safe zone", color=GREEN, va="center", fontsize=11)
+    ax.text(12, (critical + top) / 2, "no tongue found", color=GREEN, va="center", fontsize=11)
     rows = [line.split() for line in chart.attrs["labels"].split("\n")]
     width = (chart["upper"] - chart["lower"]).fillna(0.0)
     label = rows[0][int(width.isel(section=0).argmax("tongue"))]

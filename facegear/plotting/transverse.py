@@ -94,41 +94,85 @@ def _draw_sections(ax: Axes, chart: xr.Dataset) -> None:
         )
 
 
-def _draw_safe_zone(ax: Axes, chart: xr.Dataset, limit: float | None, *, above: bool) -> None:
-    if limit is None:
-        return
-    height, top = limit * _SCALE[_parameter(chart)], ax.get_ylim()[1]
-    ax.axhline(height, color=GREEN, linestyle="--", linewidth=1.4)
-    ax.text(
-        12,
-        (height + top) / 2 if above else height / 2,
-        "safe zone",
-        color=GREEN,
-        va="center",
-        fontsize=11,
-        bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1},
-    )
+def _draw_windows(ax: Axes, chart: xr.Dataset, windows: Sequence[tuple[float, float]]) -> None:
+    """Values of the parameter without a tongue, as a bar at the left edge and dashed ends."""
+    scale, top = _SCALE[_parameter(chart)], ax.get_ylim()[1]
+    for low, high in windows:
+        ends = np.array([low, high]) * scale
+        ax.axvspan(0.0, 0.008 * ax.get_xlim()[1], ends[0] / top, ends[1] / top, color=GREEN)
+        for end in ends[ends < 0.999 * top]:
+            ax.axhline(end, color=GREEN, linestyle="--", linewidth=1.4)
+        if ends[1] - ends[0] > 0.05 * top:
+            ax.text(
+                14 * ax.get_xlim()[1] / 1000,
+                ends.mean(),
+                "no tongue found",
+                color=GREEN,
+                va="center",
+                fontsize=11,
+                bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1},
+            )
 
 
 @styled
-def stability_maps(charts: Mapping[str, xr.Dataset], safe: Mapping[str, float | None]) -> Figure:
-    """Stability maps one below the other, with traced borders, names of tongues and safe zones (Figs 4.4, 4.5).
+def stability_maps(
+    charts: Mapping[str, xr.Dataset], windows: Mapping[str, Sequence[tuple[float, float]]]
+) -> Figure:
+    """Stability maps one below the other, with traced borders, names of tongues, windows without any (Figs 4.4, 4.5).
 
     Parameters
     ----------
     charts : mapping of str to xarray.Dataset
         Title to the arrays of :func:`facegear.transverse_arrays.stability_figure`.
-    safe : mapping of str to float or None
-        The same titles to the limit of the safe zone: above it for stiffness and damping, below it for mass.
+    windows : mapping of str to sequence of (float, float)
+        The same titles to what :func:`facegear.transverse_arrays.tongue_free` returns; empty for none.
     """
     figure, axes = panels(len(charts), 1, 3.4 * len(charts))
     largest = _largest(list(charts.values()))
     for ax, (title, chart) in zip(axes, charts.items(), strict=True):
         mesh = _draw_map(ax, chart, largest)
         _draw_sections(ax, chart)
-        _draw_safe_zone(ax, chart, safe[title], above=_parameter(chart) != "mass")
+        _draw_windows(ax, chart, windows[title])
         ax.set_title(title, loc="left")
     axes[-1].set_xlabel(_SPEED)
+    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    return figure
+
+
+@styled
+def wide_maps(
+    charts: Mapping[str, xr.Dataset],
+    windows: Mapping[str, Sequence[tuple[float, float]]],
+    marks: Mapping[str, Mapping[str, float]],
+) -> Figure:
+    """Draw maps over a wide range of a parameter, and beside each the share of its speeds that is unstable.
+
+    Parameters
+    ----------
+    charts : mapping of str to xarray.Dataset
+        Title to the arrays of :func:`facegear.transverse_arrays.growth_map`.
+    windows : mapping of str to sequence of (float, float)
+        The same titles to what :func:`facegear.transverse_arrays.tongue_free` returns.
+    marks : mapping of str to mapping of str to float
+        The same titles to names and heights of lines to draw.
+    """
+    figure, axes = panels(len(charts), 2, 3.9 * len(charts), width_ratios=(3, 1), sharey="row")
+    largest = _largest(list(charts.values()))
+    for (ax, beside), (title, chart) in zip(
+        zip(axes[::2], axes[1::2], strict=True), charts.items(), strict=True
+    ):
+        mesh = _draw_map(ax, chart, largest)
+        _draw_windows(ax, chart, windows[title])
+        right = ax.get_xlim()[1]
+        for name, height in marks[title].items():
+            ax.axhline(height, color=INK, linestyle=":", linewidth=1.0)
+            ax.text(0.99 * right, height, name, ha="right", va="bottom", fontsize=9, color=INK)
+        share = 100.0 * (chart["growth_rate"].values > 0.0).mean(axis=1)
+        beside.plot(share, chart[_parameter(chart)].values * _SCALE[_parameter(chart)], color=VERMILION)
+        beside.set_xlim(left=0.0)
+        ax.set_title(title, loc="left")
+    axes[-2].set_xlabel(_SPEED)
+    axes[-1].set_xlabel("unstable speeds [%]")
     figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
     return figure
 

@@ -8,8 +8,8 @@ are written with slowly varying amplitudes, averaged over the two fast phases, m
 transformation and reduced to a growth rate. Nothing is assumed about which terms survive: a harmonic is a
 power of exp(iω_k t), exp(iω_j t) and exp(iΛt), and averaging picks the power zero of the first two.
 
-The small parameter ε is absorbed into the coefficients, and Λ, ε s λ in the text, is the detuning of the s-th multiple of
-the parametric frequency ω: sω = ω_k + ω_j + Λ (sum, 2-21), sω = ω_j − ω_k + Λ (difference, j > k), and
+The small parameter ε is absorbed into the coefficients, and Λ (ε s λ in the text) is the detuning of the s-th
+multiple of the parametric frequency ω: sω = ω_k + ω_j + Λ (sum, 2-21), sω = ω_j − ω_k + Λ (difference, j > k), and
 sω = 2ω_k + Λ (a single frequency, the sum with k = j). The superscript s of the text is left out.
 """
 

@@ -230,6 +230,52 @@ def mean_frequencies(body, speed, *, stiffness, damping, mass):
     return np.sort(found[found > 0])
 
 
+# Below, at, above the window; where the maps of Figs 4.4(a) and 4.5(a) end, and far above.
+WIDE_PLACES = {
+    "4.4a": ((0.5, 540.0), (1.9, 560.0), (2.5, 400.0), (5.0, 390.0), (5.0, 500.0), (8.0, 370.0)),
+    "4.5a": ((0.5, 590.0), (1.0, 590.0), (1.8, 430.0), (2.4, 450.0), (5.0, 280.0), (5.0, 400.0)),
+}
+
+
+def wide(number):
+    """Cells of the maps over a wide range of bearing stiffness."""
+    figure = FIGURES[number]
+    for value, speed in WIDE_PLACES[number]:
+        radius, period = spectral_radius(figure.body, speed, **load_of(figure, value))
+        yield growth(radius, period, stiffness=value, speed_rpm=speed)
+
+
+# Bearing stiffnesses and speeds [rpm] within which one tongue of each kind stands.
+RULE_PLACES = {
+    "4.4a": ((0.5, (500, 553)), (2.5, (380, 416)), (5.0, (220, 230)), (8.0, (320, 410))),
+    "4.5a": ((0.3, (560, 610)), (1.8, (420, 450)), (4.0, (250, 270)), (8.0, (340, 425))),
+}
+
+
+def rule(number, stiffnesses):
+    """Natural frequencies of the mean system that combine in single tongues, and that of pinion and bearing [Hz].
+
+    The package says where the tongue peaks, and which numbers the frequencies have.
+    """
+    figure = FIGURES[number]
+    row = 0
+    for value in stiffnesses:
+        model = replace_parameter(figure.model(), "stiffness", value)
+        for tongue in tongues(model, rpm(100.0), rpm(1000.0)):
+            peak = tongue.peak * 30 / np.pi
+            if any(value == at and low < peak < high for at, (low, high) in RULE_PLACES[number]):
+                hertz = mean_frequencies(figure.body, peak, **load_of(figure, value)) / (2 * np.pi)
+                pair = hertz[tongue.combination.k - 1], hertz[tongue.combination.j - 1]
+                meshing = figure.body.drive.gear_teeth * peak / 60
+                off = {1: abs(pair[0] + pair[1] - meshing), -1: abs(pair[1] - pair[0] - meshing)}
+                yield anchor("first", pair[0], 0.01, tongue=row)
+                yield anchor("second", pair[1], 0.01, tongue=row)
+                yield anchor("sign", min(off, key=off.get), 0.0, tongue=row)
+                own = value * reference_stiffness(figure.body) / nominal_mass(figure.body)
+                yield anchor("bearing", np.sqrt(own) / (2 * np.pi), 1e-5, tongue=row)
+            row += 1
+
+
 def hsu():
     """Centres and borders of bands in which two frequencies of the mean system add up to meshing, μ = 0.25."""
     load = {"stiffness": 0.25, "damping": 3e-6, "mass": 1.0}
@@ -377,6 +423,10 @@ FILES = {
         ),
     ),
     "ch04_slow_tongues": (ROUTE, slow_tongues),
+    "ch04_wide_4_04a": (ROUTE, lambda: wide("4.4a")),
+    "ch04_wide_4_05a": (ROUTE, lambda: wide("4.5a")),
+    "ch04_rule_4_04a": (MEAN_ROUTE, lambda: rule("4.4a", (0.5, 1.5, 2.5, 5.0, 8.0))),
+    "ch04_rule_4_05a": (MEAN_ROUTE, lambda: rule("4.5a", (0.3, 0.6, 1.8, 4.0, 8.0))),
 }
 
 

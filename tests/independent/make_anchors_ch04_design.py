@@ -116,6 +116,33 @@ def variants():
         yield anchor("critical_ratio", value, TIP, variant=0, highest_rpm=highest)
 
 
+# Basis of the row, near its tips and their speeds [rpm], which the package finds: at a peak they do not show.
+BASES = {
+    0: ((1, 3), (0.03761, 180.0), (0.03945, 837.8)),
+    4: ((3, 8), (0.03872, 184.6), (0.03848, 824.0)),
+}
+
+
+def bases():
+    """Tips with the printed and with the finest basis."""
+    for row, ((circles, diameters), *near) in BASES.items():
+        for window, (ratio, speed) in enumerate(near):
+            ratios = ratio - np.array([1e-4, 2e-4])
+            values = []
+            for each in ratios:
+                body = fg.Body(
+                    constant_diametral_pitch(25),
+                    float(each),
+                    nodal_circles=circles,
+                    nodal_diameters=diameters,
+                )
+                expected = speed * each / ratio
+                at_peak = strongest(body, 0.985 * expected, 1.015 * expected)
+                values.append(growth(body, at_peak)[0])
+            tip_ratio = ratios[0] - values[0] * (ratios[1] - ratios[0]) / (values[1] - values[0])
+            yield anchor("tip_ratio", tip_ratio, TIP, variant=row, window=window)
+
+
 def teeth(family):
     power, speed = mpf("600") * mpf("745.69987"), 5000 * mpmath.pi / 30
     for count in (22, 25, 28, 32, 35):
@@ -163,6 +190,7 @@ FIGURES = {
     "ch04_figure_4_10": (ROUTE, lambda: bodies(constant_diametral_pitch)),
     "ch04_figure_4_14": (ROUTE, lambda: bodies(constant_pitch_radius)),
     "ch04_design_variants": (ROUTE, variants),
+    "ch04_design_bases": (ROUTE, bases),
     "ch04_design_lobe": (ROUTE, lobe),
     "ch04_design_geometric": (ROUTE, geometric),
 }
