@@ -170,7 +170,8 @@ def tongue_free(model: Transverse, chart: xr.Dataset, lowest_rpm: float) -> tupl
 
 def _first_free(free: Callable[[int], bool], start: int, stop: int, step: int) -> int | None:
     """First row from `start` that is free: steps that double, for a search is dear, then halves of the last one."""
-    offsets = [2**power - 1 for power in range(16) if 2**power - 1 < abs(stop - start)] + [abs(stop - start)]
+    furthest = abs(stop - start)
+    offsets = [far - 1 for far in (1 << power for power in range(16)) if far - 1 < furthest] + [furthest]
     there = next((offset for offset in offsets if free(start + step * offset)), None)
     if there is None:
         return None
