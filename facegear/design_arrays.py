@@ -422,7 +422,7 @@ def critical_of_variants(
 def tips_in_windows(
     models: Mapping[str, Transverse],
     windows_rpm: Sequence[tuple[float, float]],
-    thickness_range: tuple[float, float],
+    tops: Sequence[float],
     jobs: int = 2,
 ) -> xr.Dataset:
     """Highest tip of a lobe in each of several windows of speed, for models that differ by their basis.
@@ -433,8 +433,9 @@ def tips_in_windows(
         At any thickness.
     windows_rpm : sequence of (float, float)
         Lowest and highest speed of each window [rpm]; narrow ones make a fine basis affordable.
-    thickness_range : tuple of float
-        As for :func:`facegear.lobes.highest_lobes`.
+    tops : sequence of float
+        Thickness ratio of each model from which its tips are looked for downwards, stable. The search is short if it
+        is some 7 % above them (:func:`facegear.lobes.highest_lobes`); it ends 20 % below.
     jobs : int
         Number of processes.
 
@@ -448,8 +449,8 @@ def tips_in_windows(
 
     ends = [tuple(float(end) for end in rad_per_s(np.array(window))) for window in windows_rpm]
     found = Parallel(n_jobs=jobs)(
-        delayed(_critical)(model, low, (high,), thickness_range)
-        for model in models.values()
+        delayed(_critical)(model, low, (high,), (0.8 * top, top))
+        for model, top in zip(models.values(), tops, strict=True)
         for low, high in ends
     )
     lobes = [critical.lobe for (critical,) in found]

@@ -108,7 +108,7 @@ def test_critical_of_variants_and_tips():
 def test_tips_in_windows_are_those_of_an_independent_route():
     # data/anchors/ch04_figure_4_10.yaml: complex exponentials and DOP853
     data = design_arrays.tips_in_windows(
-        {"printed": MODEL}, [(164.0, 192.0), (740.0, 860.0)], (0.0355, 0.0405), jobs=1
+        {"printed": MODEL}, [(164.0, 192.0), (740.0, 860.0)], [0.0404], jobs=1
     )
     np.testing.assert_allclose(data["tip_ratio"], [[0.0376137, 0.0394525]], rtol=0, atol=2e-5)
     assert (int(data["circles"][0]), int(data["diameters"][0])) == (1, 3)
