@@ -57,7 +57,7 @@ def touching_angle(drive: Drive) -> float:
     Examples
     --------
     >>> from facegear import Drive
-    >>> round(touching_angle(Drive(31, 155, 3.175e-3)), 1)
+    >>> round(touching_angle(Drive(26, 130, 3.175e-3)), 1)
     26.5
     """
     tip = drive.pinion_tip_radius

@@ -98,7 +98,7 @@ def test_motion_over_time_is_that_of_the_equation_and_returns_times_the_multipli
     model = replace(SQUARE, depth=0.2, damping_ratio=0.01)
     detail = cell_detail(model, 1.95)
     motion = detail.history[:, 0]
-    # Within a part of the square wave the equation is q̈ + 2ζ q̇ + (1 ± ε) q = 0.
+    # Within a part of the square wave the equation is q̈ + 2ϑ q̇ + (1 ± ε) q = 0.
     time = motion["time"].values
     first = motion.values[(time > 0.0) & (time < 0.4)]
     step = 2.0 * np.pi / 1.95 * (time[1] - time[0])

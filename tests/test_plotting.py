@@ -152,7 +152,7 @@ DAMPED = stability_arrays.damped_charts(np.linspace(1.5, 2.5, 5), np.linspace(0.
             lambda: stability.duty_chart(stability_arrays.duty_chart([1.5, 2.0], [0.3, 0.5], 0.4)),
             "duty (contact ratio − 1)",
         ),
-        (lambda: stability.damped_chart(DAMPED.sel(damping_ratio=0.05), BANDS, 0.3), r"$\zeta$ = 0.05"),
+        (lambda: stability.damped_chart(DAMPED.sel(damping_ratio=0.05), BANDS, 0.3), r"$\vartheta$ = 0.05"),
         (
             lambda: stability.hsu_errors(
                 stability_arrays.hsu_errors([0.05, 0.1]), {"width": 1.0, "error": 2.0, "second_width": 2.0}

@@ -56,7 +56,7 @@ def test_a_control_changes_the_map(widget):
 def test_the_vertical_axis_can_be_exchanged_and_switches_its_control_off(widget):
     assert widget.controls["depth"].disabled
     widget.vertical.value = "damping_ratio"
-    assert widget.figure.layout.yaxis.title.text == "damping ratio ζ"
+    assert widget.figure.layout.yaxis.title.text == "damping ratio ϑ"
     assert widget.figure.data[0].y[-1] == pytest.approx(0.2)
     assert widget.controls["damping_ratio"].disabled
     assert not widget.controls["depth"].disabled

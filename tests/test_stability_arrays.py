@@ -87,7 +87,7 @@ def test_duty_chart_follows_the_closed_form():
 def test_bands_open_at_the_threshold_of_damping():
     data = arrays.bands(lambda e: classical.mathieu(2.0, e, 0.02), [0.07, 0.09, 0.3], 3, "Mathieu")
     assert data.attrs["labels"] == "(1+1)/1"
-    # ε = 4ζ = 0.08.
+    # ε = 4ϑ = 0.08.
     assert np.isnan(data.lower.values[0]).tolist() == [True, False, False]
     low, high = independent.hsu_single_damped(0.3, 0.02)
     np.testing.assert_allclose([data.lower.values[0, 2], data.upper.values[0, 2]], [low, high], rtol=1e-10)
