@@ -270,7 +270,7 @@ def rule(number, stiffnesses):
                 off = {1: abs(pair[0] + pair[1] - meshing), -1: abs(pair[1] - pair[0] - meshing)}
                 yield anchor("first", pair[0], 0.01, tongue=row)
                 yield anchor("second", pair[1], 0.01, tongue=row)
-                yield anchor("sign", min(off, key=off.get), 0.0, tongue=row)
+                yield anchor("sign", min(off, key=off.get), 1e-9, tongue=row)
                 own = value * reference_stiffness(figure.body) / nominal_mass(figure.body)
                 yield anchor("bearing", np.sqrt(own) / (2 * np.pi), 1e-5, tongue=row)
             row += 1
