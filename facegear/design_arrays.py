@@ -486,63 +486,6 @@ def tips_in_windows(
     )
 
 
-def tips_in_windows(
-    models: Mapping[str, Transverse],
-    windows_rpm: Sequence[tuple[float, float]],
-    tops: Sequence[float],
-    jobs: int = 2,
-) -> xr.Dataset:
-    """Highest tip of a lobe in each of several windows of speed, for models that differ by their basis.
-
-    Parameters
-    ----------
-    models : mapping of str to Transverse
-        At any thickness.
-    windows_rpm : sequence of (float, float)
-        Lowest and highest speed of each window [rpm]; narrow ones make a fine basis affordable.
-    tops : sequence of float
-        Thickness ratio of each model from which its tips are looked for downwards, stable. The search is short if it
-        is some 7 % above them (:func:`facegear.lobes.highest_lobes`); it ends 20 % below.
-    jobs : int
-        Number of processes.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``tip_ratio`` [-] and ``tip_speed`` [rpm] over (variant, window), ``circles`` and ``diameters`` over variant;
-        names in the attribute ``variants``.
-    """
-    from joblib import Parallel, delayed
-
-    ends = [tuple(float(end) for end in rad_per_s(np.array(window))) for window in windows_rpm]
-    found = Parallel(n_jobs=jobs)(
-        delayed(_critical)(model, low, (high,), (0.8 * top, top))
-        for model, top in zip(models.values(), tops, strict=True)
-        for low, high in ends
-    )
-    lobes = [critical.lobe for (critical,) in found]
-    shape, both = (len(models), len(windows_rpm)), ("variant", "window")
-    ratios = np.reshape([lobe.thickness_ratio for lobe in lobes], shape)
-    speeds = np.reshape([float(rpm(lobe.speed)) for lobe in lobes], shape)
-    circles = [model.body.nodal_circles for model in models.values()]
-    diameters = [model.body.nodal_diameters for model in models.values()]
-    return xr.Dataset(
-        {
-            "tip_ratio": variable(both, ratios, "h/a of the highest tip of a lobe", "1", atol=_RATIO),
-            "tip_speed": variable(both, speeds, "Speed of the tip", "rpm", atol=_TIP_SPEED),
-            "circles": variable("variant", circles, "Largest number of nodal circles", "1"),
-            "diameters": variable("variant", diameters, "Largest number of nodal diameters", "1"),
-        },
-        coords={"variant": np.arange(len(models)), "window": np.arange(len(windows_rpm))},
-        attrs={
-            "parameters": "windows "
-            + ", ".join(f"{low:.6g} to {high:.6g} rpm" for low, high in windows_rpm)
-            + f"; {describe(next(iter(models.values())))}",
-            "variants": "; ".join(models),
-        },
-    )
-
-
 def _critical(
     model: Transverse,
     lowest_speed: float,
