@@ -14,7 +14,7 @@ the waves in place changes it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -77,18 +77,21 @@ def disk_growth_rate(
     *,
     following: Following = "follower",
     harmonics: int = 5,
+    angles: Sequence[float] = (0.0,),
 ) -> float:
-    """Growth rate of the disk alone under one driving force: its largest eigenvalue's real part.
+    """Growth rate of the disk alone under driving forces: its largest eigenvalue's real part.
 
     Parameters
     ----------
     body : Body
     power, power_speed : float
-        P [W] at Ω1 [rad/s].
+        P [W] of each pinion at Ω1 [rad/s].
     speed : float
         Ω2 of the face gear [rad/s], 0 or greater.
     following, harmonics
         As `following` and `stress_harmonics` of :class:`facegear.transverse.Transverse`.
+    angles : sequence of float
+        Where the forces act [rad], one each.
 
     Returns
     -------
@@ -102,7 +105,7 @@ def disk_growth_rate(
     """
     damping, stiffness = disk_matrices(body, speed)
     force = driving_force(body, power, power_speed)
-    stiffness = stiffness + force * unit_stiffness(body, speed, harmonics, following, (0.0,))
+    stiffness = stiffness + force * unit_stiffness(body, speed, harmonics, following, tuple(angles))
     n = len(stiffness)
     # In the state (scale·q, q') both halves are of one size.
     scale = math.sqrt(float(np.abs(stiffness).max()))
@@ -117,8 +120,9 @@ def critical_power(
     *,
     following: Following = "follower",
     harmonics: int = 5,
+    angles: Sequence[float] = (0.0,),
 ) -> float:
-    """Smallest power at which the disk alone is unstable.
+    """Smallest power of each of one or more equal pinions at which the disk alone is unstable.
 
     Powers 15 % apart are tried upwards, and the first change of stability is then found as a root.
 
@@ -132,6 +136,9 @@ def critical_power(
         Ω2 of the face gear [rad/s], 0 or greater.
     following, harmonics
         As `following` and `stress_harmonics` of :class:`facegear.transverse.Transverse`.
+    angles : sequence of float
+        Where the forces act [rad], one each. Follower forces add up: two of them make the disk flutter at half the
+        power of each.
 
     Returns
     -------
@@ -155,7 +162,13 @@ def critical_power(
 
     def growth(share: float) -> float:
         return disk_growth_rate(
-            body, share * unit, power_speed, speed, following=following, harmonics=harmonics
+            body,
+            share * unit,
+            power_speed,
+            speed,
+            following=following,
+            harmonics=harmonics,
+            angles=angles,
         )
 
     low, high = 0.0, _FIRST

@@ -28,6 +28,45 @@ _FAST_PART = 1 / 3
 _STEP = 0.01
 _WINDOW = 0.004
 _MOST_WINDOWS = 40
+# Speeds at which the growth of flutter is sampled as the thickness changes.
+_FLUTTER_SAMPLES = 15
+
+
+class UnstableTopError(ValueError):
+    """A model is still unstable at the top of the range of thickness.
+
+    Attributes
+    ----------
+    tongue : Tongue
+        Where.
+    thickness_ratio : float
+        h/a there.
+    """
+
+    def __init__(self, tongue: Tongue, thickness_ratio: float) -> None:
+        super().__init__(
+            f"thickness_range must end above all lobes: at h/a = {thickness_ratio:.6g} the model is unstable at "
+            f"{tongue.peak:.6g} rad/s, {tongue.label}"
+        )
+        self.tongue = tongue
+        self.thickness_ratio = thickness_ratio
+
+
+class StableRangeError(ValueError):
+    """A model is stable in the whole range of thickness.
+
+    Attributes
+    ----------
+    thickness_ratio : float
+        Lowest h/a that was tried.
+    """
+
+    def __init__(self, thickness_ratio: float, speed_range: tuple[float, float]) -> None:
+        super().__init__(
+            f"thickness_range must reach down to an unstable lobe: down to h/a = {thickness_ratio:.6g} the model is "
+            f"stable from {speed_range[0]:.6g} to {speed_range[1]:.6g} rad/s"
+        )
+        self.thickness_ratio = thickness_ratio
 
 
 @dataclass(frozen=True)
@@ -155,10 +194,7 @@ class _Search:
     def refuse_unstable_top(self) -> None:
         thickest = self.thickness_range[1]
         if found := self.tongues_at(thickest, self.fast_range):
-            raise ValueError(
-                f"thickness_range must end above all lobes: at h/a = {thickest:.6g} the model is unstable at "
-                f"{found[0].peak:.6g} rad/s"
-            )
+            raise UnstableTopError(found[0], thickest)
 
     def lobes_below(self, stable: float, known: Sequence[Lobe]) -> tuple[Lobe, ...]:
         """Lobes below a thickness that is stable, the highest first; `known` are tips that have been traced."""
@@ -180,14 +216,34 @@ class _Search:
             found = self.tongues_at(level, self.speed_range)
         if not lobes:
             lowest, highest = self.speed_range
-            raise ValueError(
-                f"thickness_range must reach down to an unstable lobe: down to h/a = {thinnest:.6g} the model is "
-                f"stable from {lowest:.6g} to {highest:.6g} rad/s"
-            )
+            raise StableRangeError(thinnest, (lowest, highest))
         return tuple(sorted(lobes, key=lambda lobe: -lobe.thickness_ratio))
 
     def tip(self, level: float, tongue: Tongue) -> Lobe:
-        """Follow the largest growth rate of a tongue upwards to where it vanishes."""
+        """Follow a tongue upwards to the thickness at which its largest growth rate vanishes."""
+        if tongue.combination.kind == "mean":
+            return self.broad_tip(level, tongue)
+        return self.sharp_tip(level, tongue)
+
+    def broad_tip(self, level: float, tongue: Tongue) -> Lobe:
+        """Tip of flutter, whose growth rate has no sharp peak over speed: samples of its speeds show the largest."""
+        method = method_for(self.model_at(level), *self.speed_range)
+        speeds = np.unique([*np.linspace(tongue.lower, tongue.upper, _FLUTTER_SAMPLES), tongue.peak]).tolist()
+
+        def rates(thickness_ratio: float) -> list[float]:
+            model = self.model_at(thickness_ratio)
+            return [growth_rate(model.system(speed), method) for speed in speeds]
+
+        low, high, top = level, level * (1 + _STEP), self.thickness_range[1]
+        while max(rates(high)) > 0.0:
+            if high >= top:
+                raise UnstableTopError(tongue, high)
+            low, high = high, min(high * (1 + 2 * _STEP), top)
+        tip = float(brentq(lambda ratio: max(rates(ratio)), low, high, xtol=self.tolerance / 4))
+        return Lobe(tip, speeds[int(np.argmax(rates(tip)))], tongue.label)
+
+    def sharp_tip(self, level: float, tongue: Tongue) -> Lobe:
+        """Tip of a resonance: its peak over speed is followed."""
         method = method_for(self.model_at(level), *self.speed_range)
         points = [(level, tongue.peak)]
         growth = tongue.growth_rate
@@ -206,9 +262,7 @@ class _Search:
         low = high = level
         while growth > 0.0:
             if high >= self.thickness_range[1]:
-                raise ValueError(
-                    f"thickness_range must end above all lobes: lobe {tongue.label} goes on at {high:.6g}"
-                )
+                raise UnstableTopError(tongue, high)
             low, high = high, high * (1 + step)
             growth = peak(high)
             step = _STEP

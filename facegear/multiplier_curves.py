@@ -7,7 +7,7 @@ transition matrix is a smooth function of even oscillation, and Chebyshev series
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -217,6 +217,26 @@ class MultiplierCurve:
         low, high = 1.0 / self.highest_speed, 1.0 / self.lowest_speed
         speeds = (1.0 / (low + (high - low) * np.array([0.0371, 0.4713, 0.9329]))).tolist()
         return max(_distance(self, self.model.system(v), v, self.method) for v in speeds)
+
+    @cached_property
+    def live(self) -> MultiplierCurve:
+        """Give the multipliers that do not vanish by smaller matrices, QᵀΦQ, where Q spans all columns of Φ.
+
+        What has died within a period leaves no column in Φ, so that Φ = QQᵀΦ, and such matrices have the same
+        eigenvalues but for zeros. Q is one for all speeds. What it leaves out is smaller than the error of the series
+        at every speed, not at its nodes only, because no Chebyshev polynomial exceeds 1.
+        """
+        terms = np.concatenate([window.coefficients for window in self.windows])
+        columns = np.moveaxis(terms, 0, 1).reshape(terms.shape[1], -1)
+        basis, sizes, _ = np.linalg.svd(np.linalg.qr(columns.T, mode="r").T)
+        # Sums of norms are at most so many times the root of the sum of squares.
+        left_out = np.sqrt(len(terms) * np.append(np.cumsum(sizes[::-1] ** 2)[::-1], 0.0))
+        kept = basis[:, : int(np.argmax(left_out <= _TOLERANCE / 10.0))]
+        windows = (
+            _Window(window.low, window.high, np.asarray(kept.T @ window.coefficients @ kept, dtype=float))
+            for window in self.windows
+        )
+        return replace(self, windows=tuple(windows))
 
     def transition_matrices(self, speeds: Array) -> Array:
         """Scaled Φ at speeds (m,), shape (m, 2n, 2n)."""

@@ -24,6 +24,8 @@ SAMPLE_ANGLE = 0.2
 FEWEST_SAMPLES = 64
 # A pair is followed if so many times its foretold coupling could make it unstable.
 _SAFETY = 4.0
+# A meeting of an unstable motion is followed if the coupling, `_SAFETY` included, changes its growth by this part.
+_TELLING = 0.1
 # Reach of the expansion around a sample, in steps: neighbours overlap.
 _REACH = 1.0
 _ROUNDS = 8
@@ -162,7 +164,12 @@ def _foretold(
     difference = (apart[near] + step * turning[near]) / 2.0
     spread = difference.real**2 + _SAFETY**2 * np.abs(coupling[near]) * step**2
     foretold = np.abs((difference**2 + coupling[near] * step**2).real)
-    matters = mean + np.sqrt(np.maximum(spread, foretold)) > threshold
+    # The growth of the pair without the coupling: where that alone is unstable, and the coupling can change it by a
+    # small part only, the meeting tells nothing new.
+    apart_only = np.abs(difference.real)
+    change = np.sqrt(np.maximum(spread, foretold)) - apart_only
+    excess = mean + apart_only - threshold
+    matters = (excess + change > 0.0) & (change > _TELLING * excess)
     return centres[sample[matters]] + step[matters], np.abs(step[matters]), samples
 
 

@@ -146,8 +146,8 @@ def tongues(
                 f"threshold of {threshold:.2g}: give a larger one, or for strong dampers a method such as "
                 "facegear.radau.Radau"
             )
-        scan = scan_of(curve, threshold, hints)
-    return tuple(_tongue(model, chosen, *run) for run in _runs(curve, scan, threshold))
+        scan = scan_of(curve.live, threshold, hints)
+    return tuple(_tongue(model, chosen, *run) for run in _runs(curve.live, scan, threshold))
 
 
 def search_seconds(model: Model, lowest_speed: float, highest_speed: float) -> float:

@@ -1,0 +1,193 @@
+"""How many modes a verdict needs: the basis of a disk is raised until its unstable speeds stand still.
+
+A force at one point calls on all modes, and a basis as small as the printed one, M = 1 and N = 3, is too stiff there:
+borders of tongues move by a percent or two with more modes, and narrow tongues come and go. What stands here holds a
+drive fixed, bearings in N/m and not in parts of a stiffness that changes with the basis, and says how far it went.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from facegear.disk import reference_stiffness
+from facegear.edge_stiffness import complete_harmonics
+from facegear.parameters import integer_at_least, within
+from facegear.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS
+from facegear.tracing import Tongue, tongues
+from facegear.transverse import Transverse
+
+
+def with_basis(model: Transverse, nodal_circles: int, nodal_diameters: int) -> Transverse:
+    """Return the same drive in another basis.
+
+    Bearing stiffness and damping keep their values in N/m and N s/m: μ (4-17) is measured by a stiffness of the disk
+    that falls as modes are added. Harmonics of the driving force stay complete if they were.
+
+    Parameters
+    ----------
+    model : Transverse
+    nodal_circles, nodal_diameters : int
+        M and N of the new basis.
+
+    Returns
+    -------
+    Transverse
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :class:`facegear.plate.Body` for M and N.
+
+    Examples
+    --------
+    >>> from facegear import Body, Drive, MeshLoad, Transverse
+    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = Transverse(body, MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> richer = with_basis(model, 2, 5)
+    >>> round(richer.bearing_stiffness / model.bearing_stiffness, 12), round(richer.load.stiffness, 2)
+    (1.0, 1.06)
+    """
+    body = replace(model.body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
+    load = replace(model.load, stiffness=model.bearing_stiffness / reference_stiffness(body))
+    harmonics = model.stress_harmonics
+    if harmonics >= complete_harmonics(model.body):
+        harmonics = max(harmonics, complete_harmonics(body))
+    return replace(model, body=body, load=load, stress_harmonics=harmonics)
+
+
+def unstable_share(found: Sequence[Tongue], speed_range: tuple[float, float]) -> float:
+    """Part of a range of speed that tongues cover, 0 to 1."""
+    low, high = speed_range
+    return sum(tongue.width for tongue in found) / (high - low)
+
+
+def disagreement(first: Sequence[Tongue], second: Sequence[Tongue], speed_range: tuple[float, float]) -> float:
+    """Part of a range of speed in which only one of two sets of tongues is unstable, 0 to 1.
+
+    No border has moved by more than this part of the range.
+
+    Parameters
+    ----------
+    first, second : sequence of Tongue
+        Both from the whole range.
+    speed_range : tuple of float
+        Lowest and highest speed [rad/s].
+    """
+    low, high = speed_range
+    both = sum(
+        max(0.0, min(one.upper, other.upper) - max(one.lower, other.lower))
+        for one in first
+        for other in second
+    )
+    return max(
+        0.0, unstable_share(first, speed_range) + unstable_share(second, speed_range) - 2 * both / (high - low)
+    )
+
+
+@dataclass(frozen=True)
+class BasisStep:
+    """Tongues of a drive in one basis.
+
+    Attributes
+    ----------
+    nodal_circles, nodal_diameters : int
+        M and N.
+    tongues : tuple of Tongue
+    moved : float
+        Part of the range of speed in which this basis and the one before disagree; NaN for the first.
+    """
+
+    nodal_circles: int
+    nodal_diameters: int
+    tongues: tuple[Tongue, ...]
+    moved: float
+
+
+@dataclass(frozen=True)
+class SettledTongues:
+    """Tongues of a drive in the last of several bases.
+
+    Attributes
+    ----------
+    model : Transverse
+        The drive in that basis.
+    speed_range : tuple of float
+        Lowest and highest speed [rad/s].
+    steps : tuple of BasisStep
+        All bases, ascending.
+    settled : bool
+        Whether the last two agree on whether there is a tongue, and within the tolerance on where.
+    """
+
+    model: Transverse
+    speed_range: tuple[float, float]
+    steps: tuple[BasisStep, ...]
+    settled: bool
+
+    @property
+    def tongues(self) -> tuple[Tongue, ...]:
+        """Tongues in the last basis."""
+        return self.steps[-1].tongues
+
+    @property
+    def unstable_share(self) -> float:
+        """Part of the range of speed that is unstable, 0 to 1."""
+        return unstable_share(self.tongues, self.speed_range)
+
+
+def settled_tongues(
+    model: Transverse, speed_range: tuple[float, float], *, tolerance: float = 0.01, most_steps: int = 4
+) -> SettledTongues:
+    """Tongues of a drive in a basis that is raised until they stand still.
+
+    One nodal circle and two nodal diameters are added in each step, to the bearing as it is (:func:`with_basis`).
+
+    Parameters
+    ----------
+    model : Transverse
+        Drive in the first basis.
+    speed_range : tuple of float
+        Lowest and highest speed [rad/s].
+    tolerance : float
+        Part of the range of speed in which two bases in succession may disagree, 1e-6 to 0.5. They must also agree
+        on whether there is any tongue.
+    most_steps : int
+        Largest number of bases, at least 1; with one only, nothing is said of how good it is.
+
+    Returns
+    -------
+    SettledTongues
+        `settled` is false if the number of bases, or the largest basis there is, did not suffice.
+
+    Raises
+    ------
+    TypeError, ValueError, ArithmeticError
+        As :func:`facegear.tracing.tongues`, or if an argument is outside its range.
+    """
+    tolerance = within("tolerance", tolerance, 1e-6, 0.5)
+    integer_at_least("most_steps", most_steps, 1)
+    body = model.body
+    steps: list[BasisStep] = []
+    shown = model
+    for circles, diameters in _bases(body.nodal_circles, body.nodal_diameters, most_steps):
+        shown = with_basis(model, circles, diameters) if steps else model
+        found = tongues(shown, *speed_range)
+        moved = disagreement(steps[-1].tongues, found, speed_range) if steps else math.nan
+        steps.append(BasisStep(circles, diameters, found, moved))
+        if moved <= tolerance and bool(found) == bool(steps[-2].tongues):
+            return SettledTongues(shown, speed_range, tuple(steps), settled=True)
+    return SettledTongues(shown, speed_range, tuple(steps), settled=False)
+
+
+def _bases(nodal_circles: int, nodal_diameters: int, most: int) -> list[tuple[int, int]]:
+    """Give M and N of at most so many bases, up to the largest there is."""
+    found = [(nodal_circles, nodal_diameters)]
+    while len(found) < most:
+        circles, diameters = found[-1]
+        larger = (min(circles + 1, MAX_NODAL_CIRCLES), min(diameters + 2, MAX_NODAL_DIAMETERS))
+        if larger == found[-1]:
+            break
+        found.append(larger)
+    return found
