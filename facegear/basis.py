@@ -63,7 +63,9 @@ def unstable_share(found: Sequence[Tongue], speed_range: tuple[float, float]) ->
     return sum(tongue.width for tongue in found) / (high - low)
 
 
-def disagreement(first: Sequence[Tongue], second: Sequence[Tongue], speed_range: tuple[float, float]) -> float:
+def disagreement(
+    first: Sequence[Tongue], second: Sequence[Tongue], speed_range: tuple[float, float]
+) -> float:
     """Part of a range of speed in which only one of two sets of tongues is unstable, 0 to 1.
 
     No border has moved by more than this part of the range.
@@ -82,7 +84,8 @@ def disagreement(first: Sequence[Tongue], second: Sequence[Tongue], speed_range:
         for other in second
     )
     return max(
-        0.0, unstable_share(first, speed_range) + unstable_share(second, speed_range) - 2 * both / (high - low)
+        0.0,
+        unstable_share(first, speed_range) + unstable_share(second, speed_range) - 2 * both / (high - low),
     )
 
 

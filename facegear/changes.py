@@ -59,6 +59,7 @@ _TRANSVERSE: Mapping[str, str] = {
     "pinion mass": "load.mass",
     "bore radius": "body.bore_radius",
     "loss factor of the material": "body.material.viscous_loss_factor",
+    "power of each pinion": "power",
 }
 _TORSIONAL: Mapping[str, str] = {
     "inertia of the pinion": "box.pinion_inertia",
@@ -89,7 +90,7 @@ def possible_changes(model: Transverse | Torsional) -> tuple[Change, ...]:
     changes = [
         Change(name, partial(_scaled, parameter=parameter))
         for name, parameter in names.items()
-        if value_of(model, parameter) != 0.0
+        if _is_given(model, parameter)
     ]
     pinions = len(model.pinion_angles) if isinstance(model, Transverse) else 0
     changes += [
@@ -97,6 +98,14 @@ def possible_changes(model: Transverse | Torsional) -> tuple[Change, ...]:
         for number in range(1, pinions)
     ]
     return tuple(changes)
+
+
+def _is_given(model: Any, parameter: str) -> bool:
+    """Whether a parameter has a value that can be scaled: neither 0 nor, as a power may be, left out."""
+    try:
+        return value_of(model, parameter) != 0.0
+    except ValueError:
+        return False
 
 
 def _scaled(model: Any, change: float, parameter: str) -> Any:
@@ -119,7 +128,7 @@ def effects_of_changes(
 ) -> xr.Dataset:
     """Rank changes of a model by what they do to its tongues.
 
-    The changes that narrow the tongues most are made in earnest, by ten percent in the better direction, with all
+    The changes that narrow the tongues most, or slow their growth where all speeds are unstable, are made in earnest, by ten percent in the better direction, with all
     tongues traced anew.
 
     Parameters
@@ -146,10 +155,11 @@ def effects_of_changes(
     changes = possible_changes(model) if found else ()
     method = method_for(model, *speed_range)
     slopes = [_slopes(model, change, found, speed_range, method) for change in changes]
-    order = sorted(range(len(changes)), key=lambda i: -abs(slopes[i][0]))
+    # Where all speeds are unstable no width changes: growth decides.
+    order = sorted(range(len(changes)), key=lambda i: (-abs(slopes[i][0]), -abs(slopes[i][1])))
     after = np.full((len(order), 2), np.nan)
     for place, i in enumerate(order[:followed]):
-        after[place] = _after(model, changes[i], slopes[i][0], speed_range)
+        after[place] = _after(model, changes[i], slopes[i][0] or slopes[i][1], speed_range)
     table = np.reshape([slopes[i] for i in order], (len(order), 2)) / 100
     return xr.Dataset(
         {
@@ -208,12 +218,10 @@ def _slopes(
     return width, by_change(strongest.peak)
 
 
-def _after(
-    model: Any, change: Change, width_slope: float, speed_range: tuple[float, float]
-) -> tuple[float, float]:
+def _after(model: Any, change: Change, slope: float, speed_range: tuple[float, float]) -> tuple[float, float]:
     """Unstable width [rad/s] and largest growth rate [1/s] after a change in the better direction."""
     try:
-        changed = change.apply(model, -math.copysign(FOLLOWED, width_slope))
+        changed = change.apply(model, -math.copysign(FOLLOWED, slope))
     except ValueError:  # out of the range that the model is valid in
         return math.nan, math.nan
     found = tongues(changed, *speed_range)

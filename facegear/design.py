@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from facegear.geometry import Drive
 from facegear.lobes import CriticalThickness, highest_lobes
+from facegear.parallel import in_processes
 from facegear.parameters import MeshLoad, ascending, keep, positive, within
 from facegear.plate import THICKNESS_RATIO_RANGE, Body
 from facegear.tooth_design import root_stress
@@ -198,10 +199,8 @@ def design_family(
     tuple of tuple of BodyDesign
         One row a drive, one entry a highest speed in the given order.
     """
-    from joblib import Parallel, delayed
-
-    work = (delayed(_designs)(d, load, requirements, tuple(highest_speeds), thickness_range) for d in drives)
-    return tuple(Parallel(n_jobs=jobs)(work))
+    work = ((drive, load, requirements, tuple(highest_speeds), thickness_range) for drive in drives)
+    return tuple(in_processes(_designs, work, jobs))
 
 
 def _designs(
@@ -212,11 +211,6 @@ def _designs(
     thickness_range: tuple[float, float],
 ) -> tuple[BodyDesign, ...]:
     """Designs of one drive."""
-    from threadpoolctl import threadpool_limits
-
     model = Transverse(Body(drive, thickness_range[1]), load)
-    with threadpool_limits(limits=1):
-        found = highest_lobes(
-            _thickness_of(model), requirements.speed_range[0], highest_speeds, thickness_range
-        )
+    found = highest_lobes(_thickness_of(model), requirements.speed_range[0], highest_speeds, thickness_range)
     return tuple(_design(drive, critical, requirements) for critical in found)

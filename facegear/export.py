@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import re
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +53,35 @@ def results_directory(
     if Path(data_directory, "drives").is_dir():
         return Path(build_directory, "drives", name)
     return Path(f"{name}_results")
+
+
+def write_parts(
+    parts: Mapping[str, Callable[[Path], object]], folder: str | Path
+) -> tuple[tuple[Path, ...], dict[str, str]]:
+    """Write several files, each on its own: one that cannot be written does not keep the others back.
+
+    Parameters
+    ----------
+    parts : mapping of str to callable
+        Name of the file to what writes it, given its path.
+    folder : str or Path
+
+    Returns
+    -------
+    written : tuple of Path
+    refused : dict of str to str
+        Name of each file that was not written, and why.
+    """
+    written, refused = [], {}
+    for name, write in parts.items():
+        path = Path(folder, name)
+        try:
+            write(path)
+        except (ArithmeticError, OSError, ValueError) as problem:
+            refused[name] = str(problem)
+        else:
+            written.append(path)
+    return tuple(written), refused
 
 
 def write_stl(mesh: Mesh, path: str | Path, title: str) -> Path:

@@ -11,10 +11,10 @@ import io
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from facegear.piecewise import Array
 from facegear.provenance import code_digest
 
 Workers = Literal["processes", "threads"]
+T = TypeVar("T")
 
 
 class Task(Protocol):
@@ -102,6 +103,36 @@ def parts_of(system: PeriodicSystem) -> Iterator[Any]:
                 yield from (function.breakpoints, function.coefficients)
 
 
+def in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]], jobs: int) -> list[T]:
+    """Call a function with each of several tuples of arguments, in processes of one thread each.
+
+    Parameters
+    ----------
+    function : callable
+        Defined at the top of a module, so that another process can find it.
+    work : iterable of tuple
+        Arguments, one tuple a call.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``.
+
+    Returns
+    -------
+    list
+        Results in the order of `work`.
+    """
+    from joblib import Parallel, delayed
+
+    return list(Parallel(n_jobs=jobs)(delayed(_on_one_thread)(function, *arguments) for arguments in work))
+
+
+def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
+    """Call a function on one thread: the matrices are too small to share."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1):
+        return function(*arguments)
+
+
 def _in_parallel(
     tasks: Sequence[tuple[int, Task]], jobs: int, prefer: Workers
 ) -> Iterator[tuple[int, Array]]:
@@ -129,11 +160,7 @@ def _in_parallel(
 
 
 def _run(number: int, task: Task) -> tuple[int, Array]:
-    """One task on one thread: the matrices are too small to share."""
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(limits=1):
-        return number, task.compute()
+    return number, _on_one_thread(task.compute)
 
 
 @dataclass(frozen=True)

@@ -16,19 +16,24 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from facegear.basis import unstable_share
+from facegear.design import Requirements
 from facegear.disk import reference_stiffness
 from facegear.drive_file import DriveFile
+from facegear.edge_stiffness import Following, complete_harmonics, driving_force
 from facegear.envelope import critical_power
-from facegear.lobes import CriticalThickness, highest_lobes
+from facegear.lobes import CriticalThickness, StableRangeError, UnstableTopError, highest_lobes
 from facegear.maps import stability_map
 from facegear.modal import modal_expansion
 from facegear.models import Model, parameter_path
+from facegear.parallel import in_processes
 from facegear.parameters import FloatArray, rad_per_s, rpm
 from facegear.plate import THICKNESS_RATIO_RANGE
 from facegear.reference import text, variable
 from facegear.tooth_design import root_stress, root_thickness
 from facegear.tracing import Tongue
 from facegear.transverse import Transverse, nominal_pinion_mass
+from facegear.verdict import Case
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
@@ -56,7 +61,8 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
     tuple of Row
         In mm, degrees, kg and N/m.
     """
-    drive, body = file.drive, file.transverse.body
+    drive, body, model = file.drive, file.transverse.body, file.transverse
+    force = driving_force(body, file.requirements.power, file.requirements.pinion_speed)
     return (
         Row("gear ratio N2/N1", 1.0 / drive.gear_ratio, "1"),
         Row("pitch radius of the pinion", 1e3 * drive.pitch_radius, "mm"),
@@ -70,8 +76,9 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
         Row("mass of the body", body.mass, "kg"),
         Row("mass of a solid pinion", nominal_pinion_mass(body), "kg"),
         Row("stiffness of the disk that bearings are measured by", reference_stiffness(body), "N/m"),
-        Row("bearing stiffness", file.transverse.bearing_stiffness, "N/m"),
-        Row("pinion mass", file.transverse.pinion_mass, "kg"),
+        Row("bearing stiffness", model.bearing_stiffness, "N/m"),
+        Row("pinion mass", model.pinion_mass, "kg"),
+        Row("driving force of a pinion", force, "N"),
     )
 
 
@@ -98,29 +105,47 @@ def strength(file: DriveFile) -> tuple[Row, ...]:
     )
 
 
-def flutter(file: DriveFile) -> tuple[Row, ...]:
-    """Power at which the driving force alone makes the disk flutter (chapter 6), against the power of the drive.
+def flutter(body_model: Transverse, duty: Requirements) -> tuple[Row, ...]:
+    """Power at which the driving forces alone make the disk flutter (chapter 6), against the power of the drive.
 
     Parameters
     ----------
-    file : DriveFile
+    body_model : Transverse
+        Drive in the basis of the report; of its pinions only their angles count.
+    duty : Requirements
+        Power of each pinion, its speed, range of speed.
 
     Returns
     -------
     tuple of Row
-        Power of a pinion and critical power at the lowest and the highest speed [kW], the smaller over the power of a
-        pinion [-]. Without viscous damping of the disk any power flutters, and the critical one is 0.
+        Power of a pinion; critical power of each pinion, all pinions together, for forces that follow the rim and for
+        those that keep their direction, the smallest of both ends of the speed range [kW]; the former over the power
+        of a pinion [-]. Without viscous damping of the disk any power flutters, and the critical one is 0.
     """
-    duty, body = file.requirements, file.transverse.body
-    critical = [
-        critical_power(body, duty.pinion_speed, speed) if body.material.viscous_loss_factor > 0.0 else 0.0
-        for speed in duty.speed_range
-    ]
+    body = body_model.body
+    sense = -1.0 if body_model.travel == "with_disk" else 1.0
+    angles = [sense * angle for angle in body_model.pinion_angles]
+    damped = body.material.viscous_loss_factor > 0.0
+
+    def smallest(following: Following) -> float:
+        return min(
+            critical_power(
+                body,
+                duty.pinion_speed,
+                speed,
+                following=following,
+                harmonics=complete_harmonics(body),
+                angles=angles,
+            )
+            for speed in duty.speed_range
+        )
+
+    follower, dead = (smallest("follower"), smallest("dead")) if damped else (0.0, 0.0)
     return (
         Row("power of a pinion", 1e-3 * duty.power, "kW"),
-        Row("critical power of the disk alone, lowest speed", 1e-3 * critical[0], "kW"),
-        Row("critical power of the disk alone, highest speed", 1e-3 * critical[1], "kW"),
-        Row("critical power over power of a pinion", min(critical) / duty.power, "1"),
+        Row("critical power of a pinion, disk alone, force follows the rim", 1e-3 * follower, "kW"),
+        Row("critical power of a pinion, disk alone, force keeps its direction", 1e-3 * dead, "kW"),
+        Row("critical power over power of a pinion, force follows the rim", follower / duty.power, "1"),
     )
 
 
@@ -304,22 +329,28 @@ class ThicknessVerdict(NamedTuple):
     reason: str
 
 
-def critical_thickness(file: DriveFile, widest: float = 2.5) -> ThicknessVerdict:
+def critical_thickness(
+    model: Transverse, speed_range: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
+) -> ThicknessVerdict:
     """Thickness ratio above which the body is stable in its whole speed range.
 
-    μ, ζ, τ stay as they are, so that the bearing gets stiffer with the body, as in section 4.7.
+    μ, ζ, τ and the power stay as they are, so that the bearing gets stiffer with the body, as in section 4.7.
 
     Parameters
     ----------
-    file : DriveFile
+    model : Transverse
+        With the driving force and in the basis of the report.
+    speed_range : tuple of float
+        Lowest and highest speed [rad/s].
     widest : float
-        It is looked for between 1/`widest` and `widest` times the file's thickness.
+        It is looked for between 1/`widest` and `widest` times the model's thickness.
+    tolerance : float
+        Of h/a.
 
     Returns
     -------
     ThicknessVerdict
     """
-    model = file.transverse
     here = model.body.thickness_ratio
     lowest, highest = THICKNESS_RATIO_RANGE
     searched = (max(lowest, here / widest), min(highest, here * widest))
@@ -327,11 +358,66 @@ def critical_thickness(file: DriveFile, widest: float = 2.5) -> ThicknessVerdict
     def model_at(thickness_ratio: float) -> Transverse:
         return replace(model, body=replace(model.body, thickness_ratio=thickness_ratio))
 
-    low, high = file.requirements.speed_range
+    low, high = speed_range
     try:
-        return ThicknessVerdict(highest_lobes(model_at, low, [high], searched)[0], "")
-    except ValueError as error:  # stable, or unstable, in all of the range: the message says which
-        return ThicknessVerdict(None, str(error))
+        (critical,) = highest_lobes(model_at, low, [high], searched, tolerance)
+    except UnstableTopError as error:
+        speed = f"{rpm(error.tongue.peak):.4g} rpm"
+        return ThicknessVerdict(None, f"still unstable at h/a = {error.thickness_ratio:.4g}, at {speed}")
+    except StableRangeError as error:
+        return ThicknessVerdict(None, f"stable down to h/a = {error.thickness_ratio:.4g}")
+    except ArithmeticError as error:
+        return ThicknessVerdict(None, f"the search lost its way: {error}")
+    return ThicknessVerdict(critical, "")
+
+
+def critical_thicknesses(
+    models: Sequence[Transverse], speed_range: tuple[float, float], *, jobs: int = -1
+) -> tuple[ThicknessVerdict, ...]:
+    """Critical thickness of several models, in processes, in their order."""
+    return tuple(in_processes(critical_thickness, [(model, speed_range) for model in models], jobs))
+
+
+# --- bases ------------------------------------------------------------------------------------------------------
+
+
+def basis_table(computed: Sequence[Case], parameters: str) -> xr.Dataset:
+    """How the unstable part of the speeds moves from basis to basis.
+
+    Parameters
+    ----------
+    computed : sequence of Case
+    parameters : str
+        For the provenance.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``basis``: ``nodal_circles``, ``nodal_diameters``, ``unstable_share``, ``moved`` [-], NaN for the first
+        basis of a case; name of the case in the coordinate ``case_name``.
+    """
+    rows = [(case, step) for case in computed for step in case.found.steps]
+    share = partial(variable, "basis", units="1", rtol=1e-6, atol=1e-6)
+    return xr.Dataset(
+        {
+            "nodal_circles": variable("basis", [s.nodal_circles for _, s in rows], "Nodal circles M", "1"),
+            "nodal_diameters": variable(
+                "basis", [s.nodal_diameters for _, s in rows], "Nodal diameters N", "1"
+            ),
+            "unstable_share": share(
+                [unstable_share(s.tongues, case.found.speed_range) for case, s in rows],
+                "Unstable part of the speeds",
+            ),
+            "moved": share(
+                [s.moved for _, s in rows], "Part in which this basis and the one before disagree"
+            ),
+        },
+        coords={
+            "basis": np.arange(len(rows)),
+            "case_name": text("basis", [case.name for case, _ in rows], "Name of the case"),
+        },
+        attrs={"parameters": parameters},
+    )
 
 
 # --- columns for tables -----------------------------------------------------------------------------------------
@@ -388,6 +474,18 @@ def change_columns(tables: Mapping[str, xr.Dataset]) -> Columns:
         "model": _repeated(tables, "change"),
         **_stacked(tables, {"change_name": "change", **headings}),
     }
+
+
+def basis_columns(table: xr.Dataset) -> Columns:
+    """Bases of all cases, from :func:`basis_table`, one row a basis."""
+    names = {
+        "case_name": "model",
+        "nodal_circles": "nodal_circles",
+        "nodal_diameters": "nodal_diameters",
+        "unstable_share": "unstable_share",
+        "moved": "moved_from_the_basis_before",
+    }
+    return {heading: table[name].values.tolist() for name, heading in names.items()}
 
 
 def _repeated(tables: Mapping[str, xr.Dataset], dimension: str) -> list[str]:

@@ -5,8 +5,12 @@ any browser shows, in a folder together with the tables, arrays and meshes that 
 `my_drive_results` beside the file.
 """
 
+import html
 import sys
 from pathlib import Path
+
+from nbformat import NotebookNode
+from nbformat.v4 import new_output
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -35,7 +39,6 @@ def make_report(file: Path, folder: Path) -> int:
     """Execute the notebook for a file that can be used; return the exit code."""
     # Here, because these take longer to load than a mistake takes to be told.
     import nbformat
-    from nbconvert import HTMLExporter
 
     from tools.run_notebook import NotebookFailedError, execute
 
@@ -45,14 +48,45 @@ def make_report(file: Path, folder: Path) -> int:
     except NotebookFailedError as problem:
         sys.stderr.write(f"{problem}\n")
         return 1
-    # The page holds its pictures; only mathematics comes from the network.
-    page, _ = HTMLExporter(exclude_input=True).from_notebook_node(
-        nbformat.read(folder / "report.ipynb", as_version=4)
-    )
-    (folder / "report.html").write_text(page, encoding="utf-8")
+    notebook = nbformat.read(folder / "report.ipynb", as_version=4)
+    (folder / "report.html").write_text(page_of(notebook), encoding="utf-8")
     (folder / "failed").rmdir()
     sys.stdout.write(f"The report: {(folder / 'report.html').as_uri()}\n")
     return 0
+
+
+def page_of(notebook: NotebookNode) -> str:
+    """Return an executed report as one page that needs no network: figures with their captions, no code.
+
+    The report has no formulas that a script would have to set, so that nothing is fetched.
+    """
+    from nbconvert import HTMLExporter
+
+    for cell in notebook.cells:
+        figure = cell.metadata.get("mystnb", {}).get("figure")
+        pictures = [o for o in cell.get("outputs", []) if "image/svg+xml" in o.get("data", {})]
+        if figure and pictures:
+            caption = {"text/html": f"<p><em>{html.escape(figure['caption'])}</em></p>"}
+            cell.outputs.append(new_output("display_data", data=caption))
+            alt = html.escape(cell.metadata["mystnb"]["image"]["alt"], quote=True)
+            for output in pictures:
+                drawn = output["data"].pop("image/svg+xml")
+                # Named for readers who cannot see it.
+                output["data"]["text/html"] = (
+                    f'<div role="img" aria-label="{alt}">{drawn[drawn.find("<svg") :]}</div>'
+                )
+    exporter = HTMLExporter(exclude_input=True, embed_images=True)
+    for script in (
+        "mathjax_url",
+        "require_js_url",
+        "jquery_url",
+        "mermaid_js_url",
+        "html_manager_semver_range",
+    ):
+        if exporter.has_trait(script):
+            setattr(exporter, script, "")
+    page, _ = exporter.from_notebook_node(notebook)
+    return str(page)
 
 
 if __name__ == "__main__":
