@@ -128,8 +128,8 @@ def effects_of_changes(
 ) -> xr.Dataset:
     """Rank changes of a model by what they do to its tongues.
 
-    The changes that narrow the tongues most, or slow their growth where all speeds are unstable, are made in earnest, by ten percent in the better direction, with all
-    tongues traced anew.
+    The changes that narrow the tongues most, or slow their growth where all speeds are unstable, are made in earnest,
+    by ten percent in the better direction, with all tongues traced anew.
 
     Parameters
     ----------
