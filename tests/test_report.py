@@ -2,22 +2,25 @@
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from facegear import report
+from facegear.basis import BasisStep, SettledTongues
 from facegear.changes import effects_of_changes
 from facegear.disk_arrays import plate_modes
 from facegear.drive_file import read_drive_file
+from facegear.envelope import mode_critical_powers
 from facegear.parameters import rad_per_s, rpm
 from facegear.tooth_design import root_stress
 from facegear.tracing import tongues
+from facegear.verdict import Case, driven
 
 DRIVES = Path(__file__).resolve().parents[1] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
+EXAMPLE_B = read_drive_file(DRIVES / "example_b.yaml")
 BOX = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
 RANGE = (float(rad_per_s(500.0)), float(rad_per_s(720.0)))
 FOUND = tongues(CASE_1.transverse, *RANGE)
@@ -44,21 +47,35 @@ def test_strength_follows_duty_and_material():
     assert found["allowable over largest stress"] == pytest.approx(439.9e6 / 1.5 / stress)
 
 
+FOLLOWER = "critical power of a pinion, disk alone, force follows the rim"
+DEAD = "critical power of a pinion, disk alone, force keeps its direction"
+RATIO = "critical power over power of a pinion, force follows the rim"
+
+
 def test_flutter_needs_damping_to_be_kept_off():
-    found = values(report.flutter(CASE_1))
-    critical = [value for name, value in found.items() if name.startswith("critical power of the disk")]
+    model, duty = CASE_1.transverse, CASE_1.requirements
+    found = values(report.flutter(model, duty))
     assert found["power of a pinion"] == pytest.approx(447.42)
-    assert found["critical power over power of a pinion"] == pytest.approx(min(critical) / 447.42)
+    assert found[RATIO] == pytest.approx(found[FOLLOWER] / 447.42)
+    assert found[DEAD] > 10 * found[FOLLOWER]
     # P_c ≈ ξω³/ε: in proportion to the loss factor.
-    body = CASE_1.transverse.body
     for factor, expected in ((2.0, 2.0), (0.0, 0.0)):
-        loss = factor * body.material.viscous_loss_factor
-        other = replace(body, material=replace(body.material, viscous_loss_factor=loss))
-        changed = replace(CASE_1, transverse=replace(CASE_1.transverse, body=other))
-        ratio = values(report.flutter(changed))["critical power over power of a pinion"]
-        assert ratio == pytest.approx(
-            expected * found["critical power over power of a pinion"], rel=0.02, abs=1e-12
-        )
+        loss = factor * model.body.material.viscous_loss_factor
+        other = replace(model.body, material=replace(model.body.material, viscous_loss_factor=loss))
+        ratio = values(report.flutter(replace(model, body=other), duty))[RATIO]
+        assert ratio == pytest.approx(expected * found[RATIO], rel=0.02, abs=1e-12)
+
+
+def test_two_pinions_flutter_at_half_the_power_of_each():
+    """Example B: 0.56, where the force of one pinion alone says 1.116."""
+    both, duty = EXAMPLE_B.transverse, EXAMPLE_B.requirements
+    alone = values(report.flutter(replace(both, pinion_angles=(0.0,)), duty))
+    together = values(report.flutter(both, duty))
+    assert alone[RATIO] == pytest.approx(1.116, abs=1e-3)
+    assert together[RATIO] == pytest.approx(alone[RATIO] / 2, rel=0.01)
+    # First order, in closed form: the mean shear of p forces is p times that of one.
+    first = float(mode_critical_powers(both.body, duty.pinion_speed).min())
+    assert together[FOLLOWER] == pytest.approx(1e-3 * first / 2, rel=0.01)
 
 
 def test_tongues_and_windows_share_out_the_range():
@@ -117,36 +134,45 @@ def test_map_and_tongues_agree():
 
 
 @pytest.mark.slow
-def test_critical_thickness_parts_stable_from_unstable():
-    file = replace(CASE_1, requirements=replace(CASE_1.requirements, speed_range=RANGE))
-    critical = report.critical_thickness(file).critical.thickness_ratio
-    for factor, stable in ((1.002, True), (0.998, False)):
-        body = replace(CASE_1.transverse.body, thickness_ratio=factor * critical)
-        assert bool(tongues(replace(CASE_1.transverse, body=body), *RANGE)) != stable
+@pytest.mark.parametrize("force", ["follower", "dead"])
+def test_critical_thickness_parts_stable_from_unstable(force):
+    model = driven(CASE_1, force, CASE_1.drive.contact_ratio)
+    critical = report.critical_thickness(model, RANGE).critical.thickness_ratio
+    for factor, stable in ((1.004, True), (0.996, False)):
+        body = replace(model.body, thickness_ratio=factor * critical)
+        assert bool(tongues(replace(model, body=body), *RANGE)) != stable
 
 
-def test_no_critical_thickness_is_told_with_the_reason():
+def test_flutter_decides_the_thickness_where_the_force_follows():
+    """P_c goes with the fourth power of the thickness: ω³ and one more for the mass that the force moves."""
+    narrow = (float(rad_per_s(900.0)), float(rad_per_s(905.0)))
+    model = driven(CASE_1, "follower", CASE_1.drive.geometric_contact_ratio)
+    critical = report.critical_thickness(model, narrow).critical
+    ratio = values(report.flutter(model, CASE_1.requirements))[RATIO]
+    assert critical.thickness_ratio == pytest.approx(0.03 * ratio**-0.25, rel=0.02)
+    assert critical.lobe.label.startswith("mean")
+
+
+def test_no_critical_thickness_is_told_with_the_reason_in_rpm():
     narrow = (float(rad_per_s(600.0)), float(rad_per_s(601.0)))
-    file = replace(CASE_1, requirements=replace(CASE_1.requirements, speed_range=narrow))
     # 0.001 of the thickness up or down: stable there.
-    verdict = report.critical_thickness(file, widest=1.001)
+    verdict = report.critical_thickness(CASE_1.transverse, narrow, widest=1.001)
     assert verdict.critical is None
-    assert "stable" in verdict.reason
-    inside = replace(
-        file, requirements=replace(file.requirements, speed_range=(FOUND[0].lower, FOUND[0].upper))
-    )
-    verdict = report.critical_thickness(inside, widest=1.001)
+    assert verdict.reason == "stable down to h/a = 0.02997"
+    inside = (FOUND[0].lower, FOUND[0].upper)
+    verdict = report.critical_thickness(CASE_1.transverse, inside, widest=1.001)
     assert verdict.critical is None
-    assert "must end above all lobes" in verdict.reason
+    assert "still unstable at h/a = 0.03003, at 5" in verdict.reason
+    assert verdict.reason.endswith("rpm")
 
 
-def test_a_label_may_hold_blanks():
-    row = {"lower": 20.0, "upper": 21.0, "peak": 20.5, "growth_rate": 3.0}
-    found = [SimpleNamespace(label=label, **row) for label in ("mean 2", "(1+1)/1", "a; b\nc")]
-    table = report.tongue_table(found, "")
-    columns = report.tongue_columns({"a": table})
-    assert columns["tongue"] == ["mean 2", "(1+1)/1", "a; b\nc"]
-    assert {len(column) for column in columns.values()} == {3}
+def test_bases_of_all_cases_stand_in_one_table():
+    steps = (BasisStep(1, 3, (), np.nan), BasisStep(2, 5, FOUND, 0.25))
+    found = SettledTongues(CASE_1.transverse, RANGE, steps, settled=False)
+    table = report.basis_table([Case("Tregold", "dead", found, 0.0)], "case 1")
+    assert table["case_name"].values.tolist() == ["Tregold, force keeps its direction"] * 2
+    assert table["unstable_share"].values == pytest.approx([0.0, found.unstable_share])
+    assert report.basis_columns(table)["nodal_diameters"] == [3, 5]
 
 
 def test_columns_of_tables():
