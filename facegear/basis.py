@@ -11,10 +11,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from facegear.disk import reference_stiffness
+import numpy as np
+
+from facegear.disk import disk_stiffness, reference_stiffness
 from facegear.edge_stiffness import complete_harmonics
-from facegear.parameters import integer_at_least, within
-from facegear.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS
+from facegear.parameters import FloatArray, integer_at_least, within
+from facegear.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, Body
 from facegear.tracing import Tongue, tongues
 from facegear.transverse import Transverse
 
@@ -141,11 +143,12 @@ class SettledTongues:
 
 
 def settled_tongues(
-    model: Transverse, speed_range: tuple[float, float], *, tolerance: float = 0.01, most_steps: int = 4
+    model: Transverse, speed_range: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
 ) -> SettledTongues:
     """Tongues of a drive in a basis that is raised until they stand still.
 
-    One nodal circle and two nodal diameters are added in each step, to the bearing as it is (:func:`with_basis`).
+    Two nodal diameters are added in each step, and a nodal circle where it changes the static stiffness of the disk at
+    its teeth by a third or more of what they do; the bearing stays as it is (:func:`with_basis`).
 
     Parameters
     ----------
@@ -171,10 +174,9 @@ def settled_tongues(
     """
     tolerance = within("tolerance", tolerance, 1e-6, 0.5)
     integer_at_least("most_steps", most_steps, 1)
-    body = model.body
     steps: list[BasisStep] = []
     shown = model
-    for circles, diameters in _bases(body.nodal_circles, body.nodal_diameters, most_steps):
+    for circles, diameters in _bases(model.body, most_steps):
         shown = with_basis(model, circles, diameters) if steps else model
         found = tongues(shown, *speed_range)
         moved = disagreement(steps[-1].tongues, found, speed_range) if steps else math.nan
@@ -184,13 +186,25 @@ def settled_tongues(
     return SettledTongues(shown, speed_range, tuple(steps), settled=False)
 
 
-def _bases(nodal_circles: int, nodal_diameters: int, most: int) -> list[tuple[int, int]]:
+def _bases(body: Body, most: int) -> list[tuple[int, int]]:
     """Give M and N of at most so many bases, up to the largest there is."""
-    found = [(nodal_circles, nodal_diameters)]
+    found = [(body.nodal_circles, body.nodal_diameters)]
     while len(found) < most:
         circles, diameters = found[-1]
-        larger = (min(circles + 1, MAX_NODAL_CIRCLES), min(diameters + 2, MAX_NODAL_DIAMETERS))
+        more_circles = min(circles + 1, MAX_NODAL_CIRCLES)
+        more_diameters = min(diameters + 2, MAX_NODAL_DIAMETERS)
+        here = _softness(body, circles, diameters)
+        by_circles = np.abs(_softness(body, more_circles, diameters) / here - 1.0).max()
+        by_diameters = np.abs(_softness(body, circles, more_diameters) / here - 1.0).max()
+        larger = (more_circles if by_circles >= by_diameters / 3.0 else circles, more_diameters)
         if larger == found[-1]:
             break
         found.append(larger)
     return found
+
+
+def _softness(body: Body, nodal_circles: int, nodal_diameters: int) -> FloatArray:
+    """Static deflection per force at the inner, middle and outer radius of the teeth, of a disk at rest [m/N]."""
+    basis = replace(body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
+    inner, outer = body.drive.inner_radius, body.drive.outer_radius
+    return np.array([1.0 / float(disk_stiffness(basis, 0.0, r)) for r in (inner, (inner + outer) / 2, outer)])

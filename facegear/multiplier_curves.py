@@ -228,7 +228,7 @@ class MultiplierCurve:
         """
         terms = np.concatenate([window.coefficients for window in self.windows])
         columns = np.moveaxis(terms, 0, 1).reshape(terms.shape[1], -1)
-        basis, sizes, _ = np.linalg.svd(np.linalg.qr(columns.T, mode="r").T)
+        basis, sizes, _ = np.linalg.svd(np.linalg.qr(columns.T).R.T)
         # Sums of norms are at most so many times the root of the sum of squares.
         left_out = np.sqrt(len(terms) * np.append(np.cumsum(sizes[::-1] ** 2)[::-1], 0.0))
         kept = basis[:, : int(np.argmax(left_out <= _TOLERANCE / 10.0))]

@@ -87,7 +87,7 @@ def clocks(file: DriveFile) -> dict[str, float]:
 
 
 def cases(
-    file: DriveFile, *, tolerance: float = 0.01, most_steps: int = 4, jobs: int = -1
+    file: DriveFile, *, tolerance: float = 0.02, most_steps: int = 5, jobs: int = -1
 ) -> tuple[Case, ...]:
     """Tongues of a drive under its power, for both contact ratios and both directions of the force.
 

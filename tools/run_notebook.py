@@ -13,6 +13,7 @@ import sys
 import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import papermill
@@ -59,7 +60,7 @@ def execute(
     notebook: Path,
     output: Path,
     failed: Path,
-    parameters: Mapping[str, str] | None = None,
+    parameters: Mapping[str, Any] | None = None,
     on_cell: Callable[[int], None] = lambda _: None,
 ) -> None:
     """Execute `notebook` in its own folder and move the result to `output` when it is complete.
@@ -70,7 +71,7 @@ def execute(
         What to execute, and the name of the executed notebook.
     failed : Path
         Folder that receives the notebook as far as it came when a cell fails.
-    parameters : mapping of str to str, optional
+    parameters : mapping, optional
         Papermill parameters; none leaves the values written in the notebook, but for `live_controls`, which is
         off.
     on_cell : callable
