@@ -204,7 +204,7 @@ def _bases(body: Body, most: int) -> list[tuple[int, int]]:
 
 
 def _softness(body: Body, nodal_circles: int, nodal_diameters: int) -> FloatArray:
-    """Static deflection per force at the inner, middle and outer radius of the teeth, of a disk at rest [m/N]."""
+    """Deflection per force of a disk at rest, at the inner, middle and outer radius of the teeth [m/N]."""
     basis = replace(body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
     inner, outer = body.drive.inner_radius, body.drive.outer_radius
     return np.array([1.0 / float(disk_stiffness(basis, 0.0, r)) for r in (inner, (inner + outer) / 2, outer)])

@@ -67,11 +67,10 @@ def test_flutter_needs_damping_to_be_kept_off():
 
 
 def test_two_pinions_flutter_at_half_the_power_of_each():
-    """Example B: 0.56, where the force of one pinion alone says 1.116."""
+    """The report of a drive with two pinions gave that of one: twice what is right."""
     both, duty = EXAMPLE_B.transverse, EXAMPLE_B.requirements
     alone = values(report.flutter(replace(both, pinion_angles=(0.0,)), duty))
     together = values(report.flutter(both, duty))
-    assert alone[RATIO] == pytest.approx(1.116, abs=1e-3)
     assert together[RATIO] == pytest.approx(alone[RATIO] / 2, rel=0.01)
     # First order, in closed form: the mean shear of p forces is p times that of one.
     first = float(mode_critical_powers(both.body, duty.pinion_speed).min())
