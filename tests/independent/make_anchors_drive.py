@@ -1,50 +1,87 @@
 """Compute the anchors of the report on Case I: `python -m tests.independent.make_anchors_drive`.
 
-Takes a minute. Borders and peaks of tongues are found as roots and maxima of spectral radii by the independent route
-of chapter 4, in brackets of whole rpm.
+Takes some minutes. Borders of tongues are found as roots of spectral radii by the independent route of chapter 6, K_f
+of the text in complex exponentials and DOP853, in brackets of a few rpm. The basis is the one that the report ends
+with, the bearing that of the printed basis in N/m.
 """
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from facegear.cases import CASE_1
-from tests.independent.make_anchors_ch04 import RADIUS_TOLERANCE, ROUTE, anchor, spectral_radius, write
+from tests.independent.complex_galerkin import multipliers
+from tests.independent.make_anchors_ch04 import (
+    RADIUS_TOLERANCE,
+    anchor,
+    nominal_mass,
+    pinion,
+    reference_stiffness,
+    rpm,
+    write,
+)
+from tests.independent.make_anchors_ch06 import LoadedDisk, loaded
 
-LOAD = {"stiffness": 1.0, "damping": 3e-6, "mass": 1.0}
+ROUTE = (
+    "tests/independent/edge_load.py and complex_galerkin.py: (6-25) in complex exponentials with K_f by (6-27), all "
+    "harmonics, one smooth piece of the period after the other by DOP853 at 1e-12"
+)
+BODY = replace(CASE_1, nodal_circles=1, nodal_diameters=5)
+POWER, POWER_SPEED = 447.42e3, rpm(5000.0)
+BEARING = reference_stiffness(CASE_1)  # μ = 1
+DAMPING = 3e-6 * BEARING
 # Growth in a period from which `facegear.tongues` calls a speed unstable.
 THRESHOLD = 1e-8
-# Number of a tongue and brackets of its borders [rpm], and of one peak.
-BORDERS = {
-    0: ((127, 128), (128, 129)),
-    2: ((288, 288.5), (288.5, 289)),
-    3: ((534, 535), (554, 555)),
-    5: ((654, 655), (701, 702)),
-    6: ((832, 833), (913, 914)),
-}
-PEAK = (3, (540, 550))
+# Number of a tongue, which border, and a bracket of it [rpm].
+BRACKETS = (
+    (0, "lower", (113.5, 114.5)),
+    (0, "upper", (118.0, 119.0)),
+    (1, "lower", (122.0, 123.0)),
+    (1, "upper", (422.5, 424.0)),
+    (2, "lower", (431.0, 432.5)),
+)
+
+
+@cache
+def unit_stiffness(speed):
+    return loaded(BODY, 1.0, 2 * BODY.nodal_diameters).load_stiffness(speed)
+
+
+class Disk(LoadedDisk):
+    """The loaded disk with K_f made once for each speed."""
+
+    def load_stiffness(self, speed):
+        return self.force * unit_stiffness(speed)
+
+
+@cache
+def disk():
+    plain = loaded(BODY, POWER / (POWER_SPEED * BODY.drive.pitch_radius), 2 * BODY.nodal_diameters)
+    return Disk(**{name: getattr(plain, name) for name in plain.__dataclass_fields__})
 
 
 def excess(speed_rpm):
-    return spectral_radius(CASE_1, speed_rpm, **LOAD)[0] - 1.0 - THRESHOLD
-
-
-def growth(speed_rpm):
-    radius, period = spectral_radius(CASE_1, speed_rpm, **LOAD)
-    return float(np.log(radius) / period)
+    period = 2 * np.pi / (BODY.drive.gear_teeth * rpm(speed_rpm))
+    found = multipliers(
+        disk(),
+        [pinion(BODY, None, 1)],
+        rpm(speed_rpm),
+        period,
+        m_p=nominal_mass(BODY),
+        c_b=DAMPING,
+        k_b=BEARING,
+    )
+    return float(np.abs(found).max()) - 1.0 - THRESHOLD
 
 
 def borders():
-    for tongue, brackets in BORDERS.items():
-        for name, (low, high) in zip(("lower", "upper"), brackets, strict=True):
-            place = brentq(excess, low, high, xtol=1e-6)
-            slope = (excess(place + 0.01) - excess(place - 0.01)) / 0.02
-            # The tolerance of the spectral radius on both routes, carried over to the border, and of the search.
-            yield anchor(name, place, 2 * RADIUS_TOLERANCE / abs(slope) + 2e-6, tongue=tongue)
-    tongue, bounds = PEAK
-    found = minimize_scalar(
-        lambda speed: -growth(speed), bounds=bounds, method="bounded", options={"xatol": 1e-2}
-    )
-    yield anchor("largest_growth", -found.fun, 1e-4, tongue=tongue)
+    for tongue, name, (low, high) in BRACKETS:
+        place = brentq(excess, low, high, xtol=1e-6)
+        slope = (excess(place + 0.01) - excess(place - 0.01)) / 0.02
+        # The tolerance of the spectral radius on both routes, carried over to the border, and of the search.
+        yield anchor(name, place, 2 * RADIUS_TOLERANCE / abs(slope) + 2e-6, tongue=tongue)
 
 
 if __name__ == "__main__":
