@@ -140,7 +140,7 @@ def _strip(ax: Axes, place: int, table: xr.Dataset, low: float, high: float) -> 
     ):
         # The narrowest tongues would not show: each is at least a line wide.
         ax.barh(place, max(stop - start, 2e-3 * (high - low)), 0.5, start, color=VERMILION)
-        if start - last > 0.07 * (high - low):
+        if start - last > 0.12 * (high - low):
             ax.text((start + stop) / 2, place + 0.29, label, ha="center", va="bottom", fontsize=8)
             last = start
 
