@@ -77,7 +77,7 @@ def page_of(notebook: NotebookNode) -> str:
                 output["data"]["text/html"] = (
                     f'<div role="img" aria-label="{alt}">{drawn[drawn.find("<svg") :]}</div>'
                 )
-    exporter = HTMLExporter(exclude_input=True, embed_images=True)
+    exporter = HTMLExporter(exclude_input=True, exclude_output_prompt=True, embed_images=True)
     for script in (
         "mathjax_url",
         "require_js_url",
