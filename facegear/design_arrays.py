@@ -16,6 +16,7 @@ from facegear.geometry import DEDENDUM, Drive
 from facegear.kinematics import ContactPath, SkewLine
 from facegear.lobes import CriticalThickness, Lobe, highest_lobes
 from facegear.models import replace_parameter
+from facegear.parallel import in_processes
 from facegear.parameters import FloatArray, integer_at_least, rad_per_s, rpm
 from facegear.piecewise import PiecewiseChebyshev
 from facegear.plate import Body
@@ -399,12 +400,8 @@ def critical_of_variants(
     xarray.Dataset
         ``critical_ratio`` over (variant, highest_rpm); names in the coordinate ``variant_name``.
     """
-    from joblib import Parallel, delayed
-
-    rows = Parallel(n_jobs=jobs)(
-        delayed(_critical)(model, lowest_speed, tuple(highest_speeds), thickness_range)
-        for model in models.values()
-    )
+    work = ((model, lowest_speed, tuple(highest_speeds), thickness_range) for model in models.values())
+    rows = in_processes(_critical, work, jobs)
     values = np.array([[each.thickness_ratio for each in row] for row in rows])
     highest_rpm = [round(float(rpm(highest)), 6) for highest in highest_speeds]
     return xr.Dataset(
@@ -452,14 +449,13 @@ def tips_in_windows(
         ``tip_ratio`` [-] and ``tip_speed`` [rpm] over (variant, window), ``circles`` and ``diameters`` over variant;
         names in the coordinate ``variant_name``.
     """
-    from joblib import Parallel, delayed
-
     ends = [tuple(float(end) for end in rad_per_s(np.array(window))) for window in windows_rpm]
-    found = Parallel(n_jobs=jobs)(
-        delayed(_critical)(model, low, (high,), (0.8 * top, top))
+    work = (
+        (model, low, (high,), (0.8 * top, top))
         for model, top in zip(models.values(), tops, strict=True)
         for low, high in ends
     )
+    found = in_processes(_critical, work, jobs)
     lobes = [critical.lobe for (critical,) in found]
     shape, both = (len(models), len(windows_rpm)), ("variant", "window")
     ratios = np.reshape([lobe.thickness_ratio for lobe in lobes], shape)
@@ -492,10 +488,7 @@ def _critical(
     highest_speeds: tuple[float, ...],
     thickness_range: tuple[float, float],
 ) -> tuple[CriticalThickness, ...]:
-    from threadpoolctl import threadpool_limits
-
     def model_at(thickness_ratio: float) -> Transverse:
         return replace_parameter(model, "thickness_ratio", thickness_ratio)
 
-    with threadpool_limits(limits=1):
-        return highest_lobes(model_at, lowest_speed, highest_speeds, thickness_range)
+    return highest_lobes(model_at, lowest_speed, highest_speeds, thickness_range)

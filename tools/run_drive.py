@@ -78,13 +78,7 @@ def page_of(notebook: NotebookNode) -> str:
                     f'<div role="img" aria-label="{alt}">{drawn[drawn.find("<svg") :]}</div>'
                 )
     exporter = HTMLExporter(exclude_input=True, exclude_output_prompt=True, embed_images=True)
-    for script in (
-        "mathjax_url",
-        "require_js_url",
-        "jquery_url",
-        "mermaid_js_url",
-        "html_manager_semver_range",
-    ):
+    for script in ("mathjax_url", "require_js_url", "jquery_url", "mermaid_js_url"):
         if exporter.has_trait(script):
             setattr(exporter, script, "")
     page, _ = exporter.from_notebook_node(notebook)
