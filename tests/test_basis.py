@@ -53,6 +53,7 @@ class TestWithBasis:
         assert with_basis(replace(driven, stress_harmonics=5), 2, 5).stress_harmonics == 5
         assert with_basis(replace(driven, stress_harmonics=6), 2, 5).stress_harmonics == 10
 
+    @pytest.mark.slow
     def test_agrees_with_complex_modes_integrated_by_an_independent_route(self):
         model, speed = with_basis(CASE_1, 2, 5), float(rad_per_s(510.0))
         system = model.system(speed)
@@ -95,6 +96,7 @@ class TestSettledTongues:
         assert [(step.nodal_circles, step.nodal_diameters) for step in found.steps] == [(1, 3), (1, 5)]
         assert found.steps[-1].moved == 0.0
 
+    @pytest.mark.slow
     def test_the_largest_basis_is_the_end(self):
         largest = with_basis(CASE_1, 4, 10)
         narrow = (float(rad_per_s(980.0)), float(rad_per_s(981.0)))

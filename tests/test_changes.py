@@ -51,7 +51,7 @@ def test_changes_change_what_they_say():
 @pytest.mark.parametrize(
     ("model", "speeds"),
     [
-        pytest.param(CASE_1, RANGE, id="case 1"),
+        pytest.param(CASE_1, RANGE, id="case 1", marks=pytest.mark.slow),
         pytest.param(
             PAIR,
             (float(rad_per_s(840.0)), float(rad_per_s(890.0))),

@@ -73,10 +73,11 @@ def test_anchors_of_another_figure_are_refused(directories):
         checks.load_anchors(data / "anchors" / "other.yaml")
 
 
-def test_every_stored_file_is_its_own():
-    for path in (DATA / "anchors").glob("*.yaml"):
+@pytest.mark.parametrize("step", [8, pytest.param(1, marks=pytest.mark.slow)], ids=["some", "all"])
+def test_every_stored_file_is_its_own(step):
+    for path in sorted((DATA / "anchors").glob("*.yaml"))[::step]:
         assert checks.load_anchors(path)
-    for path in (DATA / "reference").glob("*.nc"):
+    for path in sorted((DATA / "reference").glob("*.nc"))[::step]:
         reference.load(path)
 
 

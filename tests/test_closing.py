@@ -62,6 +62,7 @@ def test_every_value_between_samples_is_found(undamped):
     np.testing.assert_allclose(found.growth_rates, [growth - Shifted(p).c for p in found.values], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_two_values_between_neighbouring_samples_are_found(undamped):
     """All samples are stable; the tongue is open only around p = 1, by far less than the step."""
     depth = 1e-5

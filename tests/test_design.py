@@ -40,6 +40,7 @@ def test_lobe_a_of_figure_4_9():
     assert result.lobes == tuple(sorted(result.lobes, key=lambda lobe: -lobe.thickness_ratio))
 
 
+@pytest.mark.slow
 def test_design_flow():
     speeds = tuple(rad_per_s([150.0, 300.0]).tolist())
     needed = design.Requirements(float(watt(600.0)), float(rad_per_s(5000.0)), 1.5, speeds)

@@ -106,6 +106,7 @@ def test_critical_of_variants_and_tips():
     assert float(tipped["tip_speed"][0]) == pytest.approx(95.49297)
 
 
+@pytest.mark.slow
 def test_tips_in_windows_are_those_of_an_independent_route():
     # data/anchors/ch04_figure_4_10.yaml: complex exponentials and DOP853
     data = design_arrays.tips_in_windows(
@@ -116,6 +117,7 @@ def test_tips_in_windows_are_those_of_an_independent_route():
     assert data["variant_name"].values.tolist() == ["printed"]
 
 
+@pytest.mark.slow
 def test_thickness_figure_has_cells_tongues_and_tips_of_the_model():
     lobe = Lobe(0.03945, float(rad_per_s(834.0)), "(1+9)/1")
     data = design_arrays.thickness_figure(

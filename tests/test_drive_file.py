@@ -381,18 +381,27 @@ def mutated(draw, base, valid=False):
     return content, changed
 
 
-@settings(max_examples=500)
-@given(mutated(GEARBOX))
-def test_any_value_of_any_key_is_valid_or_named(case):
+def any_value_of_any_key_is_valid_or_named(case):
     content, changed = case
     found = checked(yaml.safe_dump(content, allow_unicode=True))
     if isinstance(found, str):
         assert any(path in found for path in changed) or "bore_radius" in found, found
 
 
-@settings(max_examples=400)
-@given(mutated(GEARBOX, valid=True))
-def test_any_number_of_the_right_size_is_valid_or_named(case):
+@settings(max_examples=60)
+@given(mutated(GEARBOX))
+def test_any_value_of_any_key_is_valid_or_named(case):
+    any_value_of_any_key_is_valid_or_named(case)
+
+
+@pytest.mark.slow
+@settings(max_examples=500)
+@given(mutated(GEARBOX))
+def test_any_value_of_any_key_is_valid_or_named_in_very_many_files(case):
+    any_value_of_any_key_is_valid_or_named(case)
+
+
+def any_number_of_the_right_size_is_valid_or_named(case):
     content, changed = case
     found = checked(yaml.safe_dump(content, allow_unicode=True))
     sections = {path.split(".")[0] for path in changed}
@@ -403,9 +412,20 @@ def test_any_number_of_the_right_size_is_valid_or_named(case):
         assert any(path in found for path in changed) or "gears" in sections, found
 
 
-@settings(max_examples=200)
-@given(st.data())
-def test_keys_left_out_or_misspelt_are_named(data):
+@settings(max_examples=60)
+@given(mutated(GEARBOX, valid=True))
+def test_any_number_of_the_right_size_is_valid_or_named(case):
+    any_number_of_the_right_size_is_valid_or_named(case)
+
+
+@pytest.mark.slow
+@settings(max_examples=400)
+@given(mutated(GEARBOX, valid=True))
+def test_any_number_of_the_right_size_is_valid_or_named_in_very_many_files(case):
+    any_number_of_the_right_size_is_valid_or_named(case)
+
+
+def keys_left_out_or_misspelt_are_named(data):
     content = yaml.safe_load(GEARBOX)
     section = data.draw(st.sampled_from([name for name in SECTIONS if name in content]))
     key = data.draw(st.sampled_from(sorted(content[section])))
@@ -418,6 +438,19 @@ def test_keys_left_out_or_misspelt_are_named(data):
     assert isinstance(found, DriveFile) == (key not in required and (other is None or other == key))
     if isinstance(found, str):
         assert f"{section}." in found or "not YAML" in found, found
+
+
+@settings(max_examples=40)
+@given(st.data())
+def test_keys_left_out_or_misspelt_are_named(data):
+    keys_left_out_or_misspelt_are_named(data)
+
+
+@pytest.mark.slow
+@settings(max_examples=200)
+@given(st.data())
+def test_keys_left_out_or_misspelt_are_named_in_very_many_files(data):
+    keys_left_out_or_misspelt_are_named(data)
 
 
 @settings(max_examples=200)

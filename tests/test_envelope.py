@@ -68,6 +68,7 @@ def model_of(stiffness, name="4.5a"):
     return replace_parameter(model, "stiffness", stiffness)
 
 
+@pytest.mark.slow
 def test_largest_power_separates_stable_from_unstable():
     model = model_of(0.5)
     limit = largest_power(model, *RANGE)
@@ -87,6 +88,7 @@ def test_a_range_that_is_never_stable_bears_nothing():
     assert limit.label.endswith("/1")
 
 
+@pytest.mark.slow
 def test_damped_bearings_have_no_limit_within_the_levels():
     model = replace_parameter(model_of(1.0, "4.4a"), "damping", 5e-5)
     limit = largest_power(model, RANGE[0], 1.01 * RANGE[0])

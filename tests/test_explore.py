@@ -45,7 +45,7 @@ def test_map_of_an_oscillator_is_unstable_where_the_trace_of_its_closed_form_say
     assert chart.values[clear] == pytest.approx((np.log(radius) / period)[clear], abs=1e-8)
 
 
-@pytest.mark.parametrize("parameter", ["depth", "damping_ratio"])
+@pytest.mark.parametrize("parameter", ["depth", pytest.param("damping_ratio", marks=pytest.mark.slow)])
 def test_last_stage_is_the_map_and_the_first_one_agrees_where_it_is_computed(parameter):
     model = replace(SQUARE, damping_ratio=0.02)
     values = np.linspace(0.01, 0.2, 8)
@@ -235,6 +235,7 @@ def test_impossible_teeth_are_named():
         study.model(study.settings({"bore_radius": 200.0, "module": 1.0}))
 
 
+@pytest.mark.slow
 def test_few_teeth_at_a_high_ratio_are_explored():
     """Contact lines end on the pinion's base circle, where the contact point's speed has no limit."""
     study = STUDIES["drive"][0]

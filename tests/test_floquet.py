@@ -236,7 +236,7 @@ def test_frozen_rate_against_an_integrator(seed):
         )
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (2, 3))])
 def test_total_rate_and_kicks_against_the_momentum_form(seed):
     numbers = np.random.default_rng(100 + seed).normal(size=(2, 3))
 
@@ -377,9 +377,7 @@ def test_uniform_rule_looks_converged_and_is_not():
 METHODS = (Stepwise(96), AlignedStepwise(64), Magnus(24), AdaptiveMagnus(1e-7), Collocation(9))
 
 
-@given(seed=st.integers(0, 10_000), size=st.integers(1, 6), loads=st.integers(1, 3), unstable=st.booleans())
-@settings(max_examples=40)
-def test_methods_agree_within_their_error_estimates(seed, size, loads, unstable):
+def methods_agree_within_their_error_estimates(seed, size, loads, unstable):
     system = random_system(seed, size, loads, unstable)
     truth = np.abs(multipliers(system, Collocation(24, 5.0))[0])
     independent = np.abs(multipliers(system, AdaptiveMagnus(1e-11))[0])
@@ -392,6 +390,28 @@ def test_methods_agree_within_their_error_estimates(seed, size, loads, unstable)
         assert error <= 2.0 * error_estimate(system, method) + 1e-10 * scale, method
 
 
+SYSTEMS = {
+    "seed": st.integers(0, 10_000),
+    "size": st.integers(1, 6),
+    "loads": st.integers(1, 3),
+    "unstable": st.booleans(),
+}
+
+
+@given(**SYSTEMS)
+@settings(max_examples=6)
+def test_methods_agree_within_their_error_estimates(seed, size, loads, unstable):
+    methods_agree_within_their_error_estimates(seed, size, loads, unstable)
+
+
+@pytest.mark.slow
+@given(**SYSTEMS)
+@settings(max_examples=40)
+def test_methods_agree_within_their_error_estimates_for_many_systems(seed, size, loads, unstable):
+    methods_agree_within_their_error_estimates(seed, size, loads, unstable)
+
+
+@pytest.mark.slow
 def test_error_estimates_are_neither_blind_nor_wild():
     """Estimate over true error of the dominant multiplier, for many systems: between 1/3 and 30, mostly near 1."""
     ratios = []

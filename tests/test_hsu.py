@@ -119,7 +119,7 @@ def test_one_degree_of_freedom_with_varying_mass():
             standard_form(system, 3)
 
 
-@pytest.mark.parametrize("velocity", [False, True])
+@pytest.mark.parametrize("velocity", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_combination_resonances_of_symmetric_coupling(velocity):
     # A symmetric periodic stiffness makes the sum unstable and not the difference; a symmetric periodic damping
     # both, since B B' of 2-28 changes sign with f.
@@ -438,6 +438,7 @@ def test_statements_about_the_input_shaft():
     assert growth(159 * RPM) > 0
 
 
+@pytest.mark.slow
 def test_statements_about_the_output_shaft():
     # Fig. 7.13(a): the combination (1+2)/2 near 570 rpm is missed by pairs alone. Its own coupling, of second
     # order s, is too small; it lives on two couplings of order 1, which the block of three eigenvalues has.

@@ -34,7 +34,7 @@ def test_high_harmonics_against_powers_of_r(harmonic, bore):
         )
 
 
-@pytest.mark.parametrize("harmonic", [1, 2])
+@pytest.mark.parametrize("harmonic", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_field_against_both_closed_forms(harmonic):
     michell = symbolic.michell_stresses(harmonic, X.tolist(), 0.3, 0.2)
     np.testing.assert_allclose(harmonic_field(0.2, 0.3, 0.0, harmonic).stresses(X)[:, 0], michell, atol=1e-11)

@@ -29,6 +29,7 @@ def computed(environment):
     return json.loads(done.stdout)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(KERNEL is None, reason="no other kernel is known for this processor")
 def test_the_other_kernel_has_other_last_digits():
     plain = {name: value for name, value in os.environ.items() if name not in tool.switched("", ())}
