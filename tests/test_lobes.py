@@ -50,7 +50,7 @@ def test_tip_of_meissners_principal_lobe():
     assert result.lobe.label == "(1+1)/1"
 
 
-@pytest.mark.parametrize("speed_range", [(2.05, 3.0), (1.4, 1.8)])
+@pytest.mark.parametrize("speed_range", [(2.05, 3.0), pytest.param((1.4, 1.8), marks=pytest.mark.slow)])
 def test_lobe_cut_off_by_the_end_of_the_speed_range(speed_range):
     end = min(speed_range, key=lambda speed: abs(speed - 1.95))
     (result,) = highest_lobes(model_at, speed_range[0], speed_range[1:], (0.005, 0.06), tolerance=1e-6)
@@ -58,6 +58,7 @@ def test_lobe_cut_off_by_the_end_of_the_speed_range(speed_range):
     assert result.lobe.speed == end
 
 
+@pytest.mark.slow
 def test_secondary_lobe_decides_where_the_principal_is_out_of_range():
     best = minimize_scalar(
         lambda speed: -undamped_growth(speed), bounds=(0.9, 1.1), method="bounded", options={"xatol": 1e-9}
@@ -73,6 +74,7 @@ def test_unstable_top_and_stable_range_are_refused():
         highest_lobes(model_at, 1.3, [3.0], (0.05, 0.06))
 
 
+@pytest.mark.slow
 def test_nested_ranges_of_speed_equal_each_alone():
     """The secondary lobe decides the narrow range, the principal one both wide ones, cut off by the first of them."""
     highest = [1.2, 3.0, 1.8]

@@ -1,3 +1,4 @@
+import shutil
 import signal
 import subprocess
 import sys
@@ -365,6 +366,16 @@ def test_results_of_another_code_are_computed_anew(tmp_path, monkeypatch):
     assert len(done) == 4
 
 
+@pytest.fixture(scope="module")
+def two_maps(tmp_path_factory):
+    """Fill a cache with two maps, for tests to copy."""
+    folder = tmp_path_factory.mktemp("two_maps")
+    stability_map(MATHIEU, SPEEDS, "modulation", VALUES, jobs=1, cache_directory=folder)
+    stability_map(Mathieu(damping=0.02), SPEEDS, "damping", VALUES / 2, jobs=1, cache_directory=folder)
+    assert len(list(folder.glob("*.npz"))) == 8
+    return folder
+
+
 @pytest.mark.parametrize(
     "other",
     [
@@ -376,9 +387,8 @@ def test_results_of_another_code_are_computed_anew(tmp_path, monkeypatch):
         (Mathieu(frequency=1.5), SPEEDS, "damping", VALUES, {}),
     ],
 )
-def test_the_cache_is_not_used_for_another_map(tmp_path, monkeypatch, other):
-    stability_map(MATHIEU, SPEEDS, "modulation", VALUES, jobs=1, cache_directory=tmp_path)
-    stability_map(Mathieu(damping=0.02), SPEEDS, "damping", VALUES / 2, jobs=1, cache_directory=tmp_path)
+def test_the_cache_is_not_used_for_another_map(two_maps, tmp_path, monkeypatch, other):
+    shutil.copytree(two_maps, tmp_path, dirs_exist_ok=True)
     done = interrupt_after(monkeypatch, 100)
     *arguments, options = other
     stability_map(*arguments, **options, jobs=1, cache_directory=tmp_path)

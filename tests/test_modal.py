@@ -8,7 +8,7 @@ from tests.independent.monodromy import fitted_order, floquet_growth
 from tests.resonance_systems import by_label, coupled_matrices, disk, load, mathieu
 
 
-@pytest.mark.parametrize("kind", ["sum", "difference"])
+@pytest.mark.parametrize("kind", ["sum", pytest.param("difference", marks=pytest.mark.slow)])
 def test_standard_form_with_all_coefficients_against_floquet(kind):
     # Non-symmetric D, E, F, G and unequal damping: every term of 2-27 and 2-28 counts.
     d, e, f, g = 2 * np.random.default_rng(14).normal(size=(4, 2, 2))

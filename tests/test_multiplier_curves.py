@@ -59,7 +59,9 @@ def test_points_are_no_further_apart_than_asked():
     assert np.diff(points).max() <= (0.08 - 0.008) / 64 * (1 + 1e-9)
 
 
-@pytest.mark.parametrize(("name", "value"), [("7.9b", 40.0), ("7.11b", 1.0), ("7.13a", 1e-6)])
+@pytest.mark.parametrize(
+    ("name", "value"), [pytest.param("7.9b", 40.0, marks=pytest.mark.slow), ("7.11b", 1.0), ("7.13a", 1e-6)]
+)
 def test_stiff_gearboxes_take_one_window_and_agree_with_dop853(name, value):
     figure = FIGURES[name]
     model = replace_parameter(figure.model(), figure.parameter, value)
@@ -72,6 +74,7 @@ def test_stiff_gearboxes_take_one_window_and_agree_with_dop853(name, value):
     assert curve.spectral_radii(rad_per_s(speeds_rpm)) == pytest.approx(truth, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_long_range_of_fast_oscillators_takes_several_windows():
     model = Oscillators((31.0, 77.7), (0.01, 0.02))
     curve = MultiplierCurve.of(model, 0.5, 20.0)

@@ -54,6 +54,7 @@ def test_notebook_that_runs_appears_whole(tmp_path: Path) -> None:
     assert not list((tmp_path / "failed").iterdir())
 
 
+@pytest.mark.slow
 def test_controls_are_off_where_nobody_can_turn_them(tmp_path: Path) -> None:
     notebook = write_notebook(tmp_path / "tiny.ipynb", "live_controls = True", "print(live_controls)")
     content = nbformat.read(notebook, as_version=4)
@@ -66,6 +67,7 @@ def test_controls_are_off_where_nobody_can_turn_them(tmp_path: Path) -> None:
     assert "remove-cell" in executed.cells[-2].metadata["tags"]
 
 
+@pytest.mark.slow
 def test_failing_cell_stops_with_one_line_and_leaves_the_notebook(tmp_path: Path) -> None:
     done = run(write_notebook(tmp_path / "tiny.ipynb", "a = 2", "a / 0", "print('never')"))
     kept = tmp_path / "failed" / "tiny.ipynb"
@@ -215,6 +217,7 @@ def test_a_drive_file_is_read_by_the_report_on_a_drive_alone(project: Path) -> N
     assert report == {"case_4.yaml", "drive_tongues.nc"}
 
 
+@pytest.mark.slow
 def test_the_longest_notebooks_are_started_first() -> None:
     script = "import json, dodo; print(json.dumps([dodo.LONGEST, dodo.task_book()['task_dep']]))"
     command = [sys.executable, "-c", script]

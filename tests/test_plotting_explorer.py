@@ -135,6 +135,7 @@ def test_an_error_of_the_program_is_not_taken_for_an_impossible_setting():
         widget.controls["damping_ratio"].value = 0.15
 
 
+@pytest.mark.slow
 def test_the_last_of_two_quick_changes_wins(widget):
     """With an event loop, as in a kernel, the map is refined between other events."""
     alone = explorer.MapExplorer(STUDY)

@@ -52,6 +52,7 @@ DEAD = "critical power of a pinion, disk alone, force keeps its direction"
 RATIO = "critical power over power of a pinion, force follows the rim"
 
 
+@pytest.mark.slow
 def test_flutter_needs_damping_to_be_kept_off():
     model, duty = CASE_1.transverse, CASE_1.requirements
     found = values(report.flutter(model, duty))
@@ -66,6 +67,7 @@ def test_flutter_needs_damping_to_be_kept_off():
         assert ratio == pytest.approx(expected * found[RATIO], rel=0.02, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_two_pinions_flutter_at_half_the_power_of_each():
     """The report of a drive with two pinions gave that of one: twice what is right."""
     both, duty = EXAMPLE_B.transverse, EXAMPLE_B.requirements
@@ -142,6 +144,7 @@ def test_critical_thickness_parts_stable_from_unstable(force):
         assert bool(tongues(replace(model, body=body), *RANGE)) != stable
 
 
+@pytest.mark.slow
 def test_flutter_decides_the_thickness_where_the_force_follows():
     """P_c goes with the fourth power of the thickness: ω³ and one more for the mass that the force moves."""
     narrow = (float(rad_per_s(900.0)), float(rad_per_s(905.0)))

@@ -89,9 +89,7 @@ def valid_drives(draw):
         return DRIVE
 
 
-@settings(max_examples=40)
-@given(drive=valid_drives())
-def test_any_drive_gives_a_closed_tooth_turned_outwards_or_says_why_not(drive, tmp_path_factory):
+def closed_and_turned_outwards_or_refused(drive, tmp_path_factory):
     try:
         mesh = solids.tooth_surface(drive, 5, 4).solid()
     except ValueError as refusal:
@@ -101,6 +99,19 @@ def test_any_drive_gives_a_closed_tooth_turned_outwards_or_says_why_not(drive, t
     path = write_stl(mesh, tmp_path_factory.mktemp("stl") / "tooth.stl", "any")
     assert_solid(trimesh.load_mesh(path))
     assert_solid(read(solids.pinion(drive)))
+
+
+@settings(max_examples=10)
+@given(drive=valid_drives())
+def test_any_drive_gives_a_closed_tooth_turned_outwards_or_says_why_not(drive, tmp_path_factory):
+    closed_and_turned_outwards_or_refused(drive, tmp_path_factory)
+
+
+@pytest.mark.slow
+@settings(max_examples=40)
+@given(drive=valid_drives())
+def test_any_of_many_drives_gives_a_closed_tooth_turned_outwards_or_says_why_not(drive, tmp_path_factory):
+    closed_and_turned_outwards_or_refused(drive, tmp_path_factory)
 
 
 @pytest.mark.parametrize("drive", DRIVES[2:7], ids=label)

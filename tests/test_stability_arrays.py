@@ -1,5 +1,7 @@
 """Arrays of chapter 2's figures: consistent with independent routes and with each other."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -53,9 +55,14 @@ def test_transition_curves_carry_the_trace_of_their_period(family):
         assert trace == pytest.approx(2.0 if family < 2 else -2.0, abs=1e-9)
 
 
+@cache
+def meissner_borders():
+    return arrays.meissner_borders([0.3, 0.7], 2, (0.3, 3.0)).border.values
+
+
 @pytest.mark.parametrize("family", range(4))
 def test_meissner_borders_agree_with_shooting(family):
-    borders = arrays.meissner_borders([0.3, 0.7], 2, (0.3, 3.0)).border.values[family]
+    borders = meissner_borders()[family]
     expected = [
         [independent.meissner_border(family, number, depth) for depth in (0.3, 0.7)] for number in (1, 2)
     ]
