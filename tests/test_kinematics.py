@@ -140,14 +140,15 @@ def test_line_comes_down_to_the_base_circle_with_the_square_root_of_time(drive):
 
 
 @pytest.mark.slow
+@pytest.mark.takes(30)
 @pytest.mark.parametrize("teeth", [(20, 160), (13, 26)])
 def test_centroid_next_to_the_base_circle_in_thirty_digits(teeth):
     path = ContactPath(Drive(*teeth, 3e-3))
+    # One for both steps: its limits take longer than all the rest.
+    written_out = meshing_mpmath.Drive(*teeth, "3e-3")
     for step in (1e-3, 1e-6):
         x = path.base_circle_instant - step
-        radius, angle = meshing_mpmath.contact_centroid(
-            meshing_mpmath.Drive(*teeth, "3e-3"), x, path.contact_ratio
-        )
+        radius, angle = meshing_mpmath.contact_centroid(written_out, x, path.contact_ratio)
         assert path.centroid(x).radius == pytest.approx(float(radius), rel=1e-11)
         assert path.centroid(x).angle == pytest.approx(float(angle) * path.angular_travel, abs=1e-11)
 
@@ -304,15 +305,16 @@ def test_mesh_period_is_3_20():
         mesh_period(CASE_I, "1000 rpm")
 
 
-@settings(max_examples=25)
-@given(
-    pinion=st.integers(14, 60),
-    ratio=st.floats(1.6, 6.0),
-    shaft=st.floats(60.0, 120.0),
-    clock=st.sampled_from(["contact_ratio", "geometric_contact_ratio"]),
-    x=st.floats(-5.0, 5.0),
-)
-def test_invariants_of_random_paths(pinion, ratio, shaft, clock, x):
+PATHS = {
+    "pinion": st.integers(14, 60),
+    "ratio": st.floats(1.6, 6.0),
+    "shaft": st.floats(60.0, 120.0),
+    "clock": st.sampled_from(["contact_ratio", "geometric_contact_ratio"]),
+    "x": st.floats(-5.0, 5.0),
+}
+
+
+def invariants_hold(pinion, ratio, shaft, clock, x):
     drive = Drive(pinion, math.ceil(pinion * ratio), 3e-3, shaft_angle=math.radians(shaft))
     path = ContactPath(drive, getattr(drive, clock))
     assert path.breakpoints[0] == 0.0
@@ -326,6 +328,19 @@ def test_invariants_of_random_paths(pinion, ratio, shaft, clock, x):
     assert now.radius == pytest.approx(later.radius, rel=1e-9)
     reach = math.hypot(drive.outer_radius, drive.pinion_tip_radius)
     assert drive.inner_radius <= now.radius <= reach
+
+
+@settings(max_examples=6)
+@given(**PATHS)
+def test_invariants_of_random_paths(pinion, ratio, shaft, clock, x):
+    invariants_hold(pinion, ratio, shaft, clock, x)
+
+
+@pytest.mark.slow
+@settings(max_examples=25)
+@given(**PATHS)
+def test_invariants_of_many_random_paths(pinion, ratio, shaft, clock, x):
+    invariants_hold(pinion, ratio, shaft, clock, x)
 
 
 @pytest.mark.parametrize("kind", [ContactPath, SkewLine])

@@ -45,7 +45,7 @@ def test_there_are_five_examples():
 
 
 @pytest.mark.slow
-@pytest.mark.takes(20)
+@pytest.mark.takes(80)
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_papermill_makes_the_report_in_any_folder(tmp_path, example):
     shutil.copy(example, tmp_path / "my_drive.yaml")
@@ -94,7 +94,7 @@ HOSTILE = """<img src=x onerror="window.p=1"> $x^2$ {ref}`a` [l](javascript:0)
 
 
 @pytest.mark.slow
-@pytest.mark.takes(20)
+@pytest.mark.takes(70)
 def test_the_projects_command_leaves_a_page_beside_the_file(tmp_path):
     content = yaml.safe_load((ROOT / "data" / "drives" / "example_b.yaml").read_text(encoding="utf-8"))
     # Stable, and over few speeds: the shortest report there is, and one without a tongue.

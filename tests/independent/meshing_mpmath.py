@@ -5,7 +5,7 @@ surface where the velocity of the motion has no component along the normal, with
 The undercutting limit is where the generated surface becomes singular, the pointed tooth where its two flanks meet.
 """
 
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from mpmath import (
     acos,
@@ -240,7 +240,7 @@ class ContactLine:
         """Arc length from the start of the line."""
         return quad(self.speed, [self.start, roll], method="gauss-legendre", maxdegree=3)
 
-    @property
+    @cached_property
     def length(self):
         return self.length_to(self.end)
 
@@ -251,7 +251,8 @@ class ContactLine:
         for _ in range(8):
             step = (self.length_to(roll) - half) / self.speed(roll)
             roll -= step
-            if abs(step) < mpf("1e-16"):
+            # What Newton's method leaves is of the size of its last step squared.
+            if abs(step) < mpf("1e-10"):
                 break
         x, _, z = self.point(roll)
         return hypot(x, z), atan2(x, z)
