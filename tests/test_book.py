@@ -177,7 +177,7 @@ def test_page_is_whole_and_readable(look: Callable[[int, str], Visit], width: in
 
     # A view draws itself anew some moments after the page has become narrower.
     with contextlib.suppress(PlaywrightTimeoutError):
-        page.wait_for_function(f"width => !({OVERFLOW})(width).length", arg=width, timeout=5000)
+        page.wait_for_function(f"width => !({OVERFLOW})(width).length", arg=width, timeout=30_000)
     assert not page.evaluate(OVERFLOW, width)
 
     assert (

@@ -139,7 +139,7 @@ def test_notebook_ends_with_the_build_that_started_it(tmp_path: Path) -> None:
     notebook = write_notebook(
         tmp_path / "tiny.ipynb",
         "from pathlib import Path\nPath('started').touch()",
-        "import time\ntime.sleep(120)",
+        "import time\ntime.sleep(600)",
     )
     command = [*RUN, str(notebook), str(tmp_path / "executed" / "tiny.ipynb")]
     command += ["--failed", str(tmp_path / "failed"), "--end-with-parent"]
@@ -151,8 +151,8 @@ def test_notebook_ends_with_the_build_that_started_it(tmp_path: Path) -> None:
     kernels = psutil.Process(process.pid).children(recursive=True)
     assert kernels
     process.stdin.close()
-    assert process.wait(timeout=20) == 1
-    _gone, alive = psutil.wait_procs(kernels, timeout=20)
+    assert process.wait(timeout=120) == 1
+    _gone, alive = psutil.wait_procs(kernels, timeout=120)
     assert not alive
     assert not (tmp_path / "executed" / "tiny.ipynb").exists()
 
@@ -185,7 +185,7 @@ def test_second_build_waits_for_the_first(tmp_path: Path) -> None:
             second.stdin.close()
             first.send_signal(signal.SIGKILL)  # the lock is free however its holder ends
             assert second.stdout.readline() == "in\n"
-            assert second.wait(timeout=20) == 0
+            assert second.wait(timeout=120) == 0
 
 
 @pytest.fixture
@@ -249,7 +249,7 @@ def test_build_that_is_ended_goes_on_where_it_was(project: Path, how: signal.Sig
     write_notebook(
         project / "notebooks" / "04_two.ipynb",
         "from pathlib import Path\nimport time\nif not Path('started').exists():\n"
-        "    Path('started').touch()\n    time.sleep(120)",
+        "    Path('started').touch()\n    time.sleep(600)",
     )
     with (project / "log").open("w") as log:
         process = subprocess.Popen(
@@ -264,8 +264,8 @@ def test_build_that_is_ended_goes_on_where_it_was(project: Path, how: signal.Sig
     time.sleep(0.5)  # the record of the first notebook is written just after it is done
     below = psutil.Process(process.pid).children(recursive=True)
     os.kill(process.pid, how)
-    assert process.wait(timeout=30) != 0
-    _gone, alive = psutil.wait_procs(below, timeout=30)
+    assert process.wait(timeout=120) != 0
+    _gone, alive = psutil.wait_procs(below, timeout=120)
     assert not alive
 
     times = executed(project)
@@ -338,7 +338,7 @@ def test_build_killed_at_any_moment_comes_to_the_same_arrays(
         below = psutil.Process(process.pid).children(recursive=True)
         process.kill()
         assert process.wait() == -signal.SIGKILL
-        _gone, alive = psutil.wait_procs(below, timeout=30)
+        _gone, alive = psutil.wait_procs(below, timeout=120)
         assert not alive
         for name, content in arrays().items() if (project / "build" / "arrays").exists() else ():
             # A file that was being written has a name of its own.
