@@ -51,7 +51,7 @@ def describe(model: Transverse) -> str:
 
 
 def growth_map(
-    model: Transverse, speeds_rpm: ArrayLike, parameter: str, values: ArrayLike, *, jobs: int = 2
+    model: Transverse, speeds_rpm: ArrayLike, parameter: str, values: ArrayLike, *, jobs: int = -1
 ) -> xr.Dataset:
     """Growth rates over speed and one parameter of the mesh load (Figs 4.4, 4.5).
 
@@ -65,7 +65,7 @@ def growth_map(
     values : array_like
         Its values.
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def map_family(
     parameter: str,
     values: ArrayLike,
     *,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Compute a map for each of several values of a further parameter.
 
@@ -236,7 +236,7 @@ def tongue_sections(
     values: ArrayLike,
     speeds_rpm: tuple[float, float],
     *,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Traced borders of all tongues at some values of a parameter.
 
@@ -250,7 +250,7 @@ def tongue_sections(
     speeds_rpm : tuple of float
         Lowest and highest speed of the face gear [rpm].
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -274,7 +274,7 @@ def stability_figure(
     sections: int = 7,
     traced_rpm: float = 50.0,
     highest_rpm: float = 1000.0,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Map of growth rates together with traced borders of its tongues (one of Figs 4.4, 4.5).
 
@@ -295,7 +295,7 @@ def stability_figure(
     highest_rpm : float, optional
         Highest speed [rpm].
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -334,7 +334,7 @@ def tongue_table(found: Sequence[Sequence[Tongue]], values: ArrayLike, parameter
 
 
 def convergence(
-    model: Transverse, modes: Sequence[tuple[int, int]], speeds_rpm: ArrayLike, *, jobs: int = 2
+    model: Transverse, modes: Sequence[tuple[int, int]], speeds_rpm: ArrayLike, *, jobs: int = -1
 ) -> xr.Dataset:
     """Growth rates of a model along a line of speeds for disks with more and more modes.
 
@@ -349,7 +349,7 @@ def convergence(
     speeds_rpm : array_like
         Speeds of the face gear [rpm], ascending.
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
