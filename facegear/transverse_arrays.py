@@ -8,7 +8,7 @@ that shows as 1e-4 of a growth rate per second.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -89,6 +89,7 @@ def map_family(
     parameter: str,
     values: ArrayLike,
     *,
+    known: Mapping[float, xr.Dataset] | None = None,
     jobs: int = -1,
 ) -> xr.Dataset:
     """Compute a map for each of several values of a further parameter.
@@ -102,20 +103,35 @@ def map_family(
         Its values.
     speeds_rpm, parameter, values, jobs
         As for :func:`growth_map`.
+    known : mapping of float to xarray.Dataset, optional
+        Maps that are there already, by their value of the further parameter.
 
     Returns
     -------
     xarray.Dataset
         ``growth_rate`` (name, parameter, speed_rpm) [1/s].
+
+    Raises
+    ------
+    ValueError
+        If a map that is there has other axes.
     """
+    there = known or {}
     maps = [
-        growth_map(replace_parameter(model, name, value), speeds_rpm, parameter, values, jobs=jobs)
+        there[value]
+        if value in there
+        else growth_map(replace_parameter(model, name, value), speeds_rpm, parameter, values, jobs=jobs)
         for value in members
     ]
+    axes = {parameter: np.asarray(values, dtype=float), "speed_rpm": np.asarray(speeds_rpm, dtype=float)}
+    for chart in maps:
+        for axis, expected in axes.items():
+            if not np.array_equal(chart[axis].values, expected):
+                raise ValueError(f"known must hold maps over the same {axis} as the others")
     stacked = np.stack([chart["growth_rate"].values for chart in maps])
     return xr.Dataset(
         {"growth_rate": _growth((name, parameter, "speed_rpm"), stacked, "Growth rate ln(max|λ|)/T0")},
-        coords={name: list(members), **maps[0].coords},
+        coords={name: list(members), **axes},
         attrs={"parameters": f"{describe(model)}, swept = {parameter} and {name}"},
     )
 
