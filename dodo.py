@@ -43,9 +43,19 @@ DOIT_CONFIG = {
 
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 CHAPTERS = [path.stem for path in NOTEBOOKS if path.stem < "90"]
-# Started first, so that two processors end at about the same time; all others take less.
-LONGEST = ("05_multiple_pinions", "04_one_pinion")
-IN_ORDER = sorted(NOTEBOOKS, key=lambda path: (path.stem not in LONGEST, path.stem))
+# Started first, the longest before the others, so that two processors end at about the same time.
+LONGEST = (
+    "04_design",
+    "04_one_pinion",
+    "05_multiple_pinions",
+    "06_in_plane_force",
+    "07_torsional",
+    "your_drive",
+)
+IN_ORDER = [
+    *(path for stem in LONGEST for path in NOTEBOOKS if path.stem == stem),
+    *(path for path in NOTEBOOKS if path.stem not in LONGEST),
+]
 # Which notebooks read what others leave in `build/`; all others stand alone.
 NEEDS = {"90_ledger": CHAPTERS}
 # The map on the title page: the notebook that computes it, and its arrays.

@@ -74,7 +74,7 @@ def column_spectral_radii(
     mobility = 1.0
     if method is None:
         try:
-            motion = FreeMotion(system, column)
+            motion = FreeMotion([system], column)
         except UnsuitableSystemError:
             method = GENERAL_ROUTE
         else:

@@ -202,7 +202,7 @@ def thickness_figure(
     cells: int = 200,
     sections: int = 6,
     traced_rpm: float = 100.0,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Map of growth rates over speed and thickness ratio, with traced tongues and tips (one of Figs 4.9, 4.13).
 
@@ -222,7 +222,7 @@ def thickness_figure(
     traced_rpm : float, optional
         Lowest speed at which tongues are traced [rpm].
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -379,7 +379,7 @@ def critical_of_variants(
     lowest_speed: float,
     highest_speeds: Sequence[float],
     thickness_range: tuple[float, float],
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Critical thickness ratio of several models.
 
@@ -393,7 +393,7 @@ def critical_of_variants(
     thickness_range : tuple of float
         As for :func:`facegear.lobes.highest_lobes`.
     jobs : int
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -427,7 +427,7 @@ def tips_in_windows(
     models: Mapping[str, Transverse],
     windows_rpm: Sequence[tuple[float, float]],
     tops: Sequence[float],
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Highest tip of a lobe in each of several windows of speed, for models that differ by their basis.
 
@@ -441,7 +441,7 @@ def tips_in_windows(
         Thickness ratio of each model from which its tips are looked for downwards, stable. The search is short if it
         is some 7 % above them (:func:`facegear.lobes.highest_lobes`); it ends 20 % below.
     jobs : int
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------

@@ -39,7 +39,7 @@ _WINDOW_ANGLE = 200.0
 _LOWEST_DEGREE = 8
 # Degree of the series from which the degree is read that motions need: far above what a window's angle asks for.
 _LONGEST = 256
-_DOUBLINGS = 2
+_DOUBLINGS = 1
 _MOST_CUTS = 12
 # A motion that decays by e⁻³⁰ = 1e-13 in a period leaves nothing in the transition matrix.
 _DEAD = 30.0
@@ -108,7 +108,7 @@ class FrozenMotions:
         motions = np.exp(decaying * nodes[:, None])
         sizes = np.abs(values_to_coefficients(nodes.size - 1) @ motions).max(axis=1)
         last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
-        return max(2 * _LOWEST_DEGREE, 2 * ((last + 2) // 2))
+        return max(_LOWEST_DEGREE, 2 * ((last + 2) // 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -308,7 +308,7 @@ def _windows(
 ) -> list[_Window]:
     """Series on one window, or on halves of it where its degree does not suffice."""
     middle, half = (low + high) / 2.0, (high - low) / 2.0
-    degree = motions.degree(low, high) // 2
+    degree = motions.degree(low, high)
     values = evaluate(middle + half * lobatto_points(degree))
     for _ in range(_DOUBLINGS + 1):
         if values.shape[0] <= degree:

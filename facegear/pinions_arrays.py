@@ -134,7 +134,7 @@ def angle_map(
     *,
     fixed: Sequence[float] = (0.0,),
     moving: Sequence[float] = (0.0,),
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Growth rates over speed and the total angle between two groups of pinions (Figs 5.5, 5.6).
 
@@ -173,7 +173,7 @@ def angle_map(
 
 
 def phase_maps(
-    model: Transverse, speeds_rpm: ArrayLike, teeth: Sequence[int], phases: ArrayLike, *, jobs: int = 2
+    model: Transverse, speeds_rpm: ArrayLike, teeth: Sequence[int], phases: ArrayLike, *, jobs: int = -1
 ) -> tuple[xr.Dataset, ...]:
     """Growth rates over speed and phase, one map for each positioning angle (Fig. 5.7).
 
@@ -216,7 +216,7 @@ def with_tongues(chart: xr.Dataset, tongues_of_sections: xr.Dataset) -> xr.Datas
 
 
 def traced(
-    models: Mapping[float, Transverse], speeds_rpm: tuple[float, float], *, jobs: int = 2
+    models: Mapping[float, Transverse], speeds_rpm: tuple[float, float], *, jobs: int = -1
 ) -> xr.Dataset:
     """Trace all tongues of several models (Fig. 5.11 and sections of others).
 
@@ -227,7 +227,7 @@ def traced(
     speeds_rpm : tuple of float
         Lowest and highest speed of the face gear [rpm].
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -253,7 +253,7 @@ def tooth_counts(
     pinion_teeth: Sequence[int],
     speeds_rpm: tuple[float, float],
     *,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Tongues of two pinions at a fixed angle for several tooth counts, gear ratio and module kept (Fig. 5.11).
 
@@ -351,7 +351,7 @@ def weak_tongues(
     layouts: Sequence[Sequence[float]],
     factors: Sequence[float],
     *,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Tongues of weak loads against the sum over the pinions (C-1).
 
@@ -366,7 +366,7 @@ def weak_tongues(
     factors : sequence of float
         Parts of the load, see :func:`facegear.cancellation.weakened`.
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------

@@ -141,7 +141,7 @@ def disk_alone(
 
 
 def power_maps(
-    model: Transverse, powers: Sequence[float], speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = 2
+    model: Transverse, powers: Sequence[float], speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = -1
 ) -> xr.Dataset:
     """Compute maps over speed and bearing stiffness at several powers (Figs 6.6, 6.7).
 

@@ -115,15 +115,20 @@ class Family:
             for name in ("mass", "damping", "stiffness")
         )
 
-        middle = self.breakpoints + np.diff(np.append(self.breakpoints, 1.0)) / 2.0
-        assembled_mass, _, assembled_stiffness = self.assembled(middle)
-        squares = np.linalg.eigvals(np.linalg.solve(assembled_mass, assembled_stiffness))
-        frequencies = np.sqrt(np.abs(squares).max(axis=(1, 2)))
-        # Fastest undamped motion of each system frozen in the middle of its smooth pieces [rad/s].
-        self.frequencies = np.where(frequencies > 0.0, frequencies, 1.0 / self.periods)
-        chosen = len(systems) // 2
-        self.scale = _scaling(systems[chosen].mass, float(self.frequencies[chosen]))
+        if len(systems) == 1:
+            self.scale = _scaling(first.mass, float(self.frequencies[0]))
+        else:
+            self.scale = Family([systems[len(systems) // 2]]).scale
         self.inverse_scale = np.linalg.inv(self.scale)
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """Fastest undamped motion of each system frozen in the middle of its smooth pieces [rad/s], shape (V,)."""
+        middle = self.breakpoints + np.diff(np.append(self.breakpoints, 1.0)) / 2.0
+        mass, _, stiffness = self.assembled(middle)
+        squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness))
+        frequencies = np.sqrt(np.abs(squares).max(axis=(1, 2)))
+        return np.where(frequencies > 0.0, frequencies, 1.0 / self.periods)
 
     @property
     def fastest_angle(self) -> float:

@@ -197,7 +197,7 @@ def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
 
 
 def growth_map(
-    figure: TorsionalFigure, speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = 2, **options: Any
+    figure: TorsionalFigure, speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = -1, **options: Any
 ) -> xr.Dataset:
     """Growth rates over speed and the swept parameter of a figure.
 
@@ -209,7 +209,7 @@ def growth_map(
     values : array_like
         Values of the parameter.
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
     **options
         Fields of the gearbox that replace those of the caption, such as ``arm="conjugate"``.
 
@@ -238,7 +238,7 @@ def stability_figure(
     columns: int = 400,
     rows: int = 32,
     sections: int = 4,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Map of growth rates with traced borders and Hsu's bands (one of Figs 7.9, 7.11, 7.12, 7.13).
 
@@ -250,7 +250,7 @@ def stability_figure(
     sections : int, optional
         Values of the parameter, evenly spread over the axis from its middle cell on, at which borders are traced.
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -269,7 +269,7 @@ def stability_figure(
     return chart.assign({**traced.data_vars, **hsu.data_vars})
 
 
-def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2) -> xr.Dataset:
+def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = -1) -> xr.Dataset:
     """Traced borders of all tongues at some values of the swept parameter.
 
     Parameters
@@ -277,7 +277,7 @@ def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = 2
     figure : TorsionalFigure
     values : array_like, shape (V,)
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------

@@ -8,7 +8,7 @@ that shows as 1e-4 of a growth rate per second.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 
@@ -51,7 +51,7 @@ def describe(model: Transverse) -> str:
 
 
 def growth_map(
-    model: Transverse, speeds_rpm: ArrayLike, parameter: str, values: ArrayLike, *, jobs: int = 2
+    model: Transverse, speeds_rpm: ArrayLike, parameter: str, values: ArrayLike, *, jobs: int = -1
 ) -> xr.Dataset:
     """Growth rates over speed and one parameter of the mesh load (Figs 4.4, 4.5).
 
@@ -65,7 +65,7 @@ def growth_map(
     values : array_like
         Its values.
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -89,7 +89,8 @@ def map_family(
     parameter: str,
     values: ArrayLike,
     *,
-    jobs: int = 2,
+    known: Mapping[float, xr.Dataset] | None = None,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Compute a map for each of several values of a further parameter.
 
@@ -102,20 +103,35 @@ def map_family(
         Its values.
     speeds_rpm, parameter, values, jobs
         As for :func:`growth_map`.
+    known : mapping of float to xarray.Dataset, optional
+        Maps that are there already, by their value of the further parameter.
 
     Returns
     -------
     xarray.Dataset
         ``growth_rate`` (name, parameter, speed_rpm) [1/s].
+
+    Raises
+    ------
+    ValueError
+        If a map that is there has other axes.
     """
+    there = known or {}
     maps = [
-        growth_map(replace_parameter(model, name, value), speeds_rpm, parameter, values, jobs=jobs)
+        there[value]
+        if value in there
+        else growth_map(replace_parameter(model, name, value), speeds_rpm, parameter, values, jobs=jobs)
         for value in members
     ]
+    axes = {parameter: np.asarray(values, dtype=float), "speed_rpm": np.asarray(speeds_rpm, dtype=float)}
+    for chart in maps:
+        for axis, expected in axes.items():
+            if not np.array_equal(chart[axis].values, expected):
+                raise ValueError(f"known must hold maps over the same {axis} as the others")
     stacked = np.stack([chart["growth_rate"].values for chart in maps])
     return xr.Dataset(
         {"growth_rate": _growth((name, parameter, "speed_rpm"), stacked, "Growth rate ln(max|λ|)/T0")},
-        coords={name: list(members), **maps[0].coords},
+        coords={name: list(members), **axes},
         attrs={"parameters": f"{describe(model)}, swept = {parameter} and {name}"},
     )
 
@@ -236,7 +252,7 @@ def tongue_sections(
     values: ArrayLike,
     speeds_rpm: tuple[float, float],
     *,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Traced borders of all tongues at some values of a parameter.
 
@@ -250,7 +266,7 @@ def tongue_sections(
     speeds_rpm : tuple of float
         Lowest and highest speed of the face gear [rpm].
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -274,7 +290,7 @@ def stability_figure(
     sections: int = 7,
     traced_rpm: float = 50.0,
     highest_rpm: float = 1000.0,
-    jobs: int = 2,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Map of growth rates together with traced borders of its tongues (one of Figs 4.4, 4.5).
 
@@ -295,7 +311,7 @@ def stability_figure(
     highest_rpm : float, optional
         Highest speed [rpm].
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------
@@ -334,7 +350,7 @@ def tongue_table(found: Sequence[Sequence[Tongue]], values: ArrayLike, parameter
 
 
 def convergence(
-    model: Transverse, modes: Sequence[tuple[int, int]], speeds_rpm: ArrayLike, *, jobs: int = 2
+    model: Transverse, modes: Sequence[tuple[int, int]], speeds_rpm: ArrayLike, *, jobs: int = -1
 ) -> xr.Dataset:
     """Growth rates of a model along a line of speeds for disks with more and more modes.
 
@@ -349,7 +365,7 @@ def convergence(
     speeds_rpm : array_like
         Speeds of the face gear [rpm], ascending.
     jobs : int, optional
-        Number of processes.
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
     Returns
     -------

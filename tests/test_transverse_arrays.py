@@ -115,6 +115,14 @@ def test_families_are_stacks_of_maps(tmp_path):
     check_round_trip(family, tmp_path)
     alone = arrays.growth_map(MODEL, [500.0, 540.0], "stiffness", [0.2, 0.6], jobs=1)
     np.testing.assert_allclose(family["growth_rate"].sel(mass=1.0), alone["growth_rate"], rtol=1e-9)
+    marked = alone.assign(growth_rate=alone["growth_rate"] + 7.0)
+    axes = ([500.0, 540.0], "stiffness", [0.2, 0.6])
+    with_known = arrays.map_family(MODEL, "mass", [0.5, 1.0], *axes, known={1.0: marked}, jobs=1)
+    np.testing.assert_allclose(with_known["growth_rate"].sel(mass=1.0), marked["growth_rate"], rtol=1e-9)
+    with pytest.raises(ValueError, match="speed_rpm"):
+        arrays.map_family(
+            MODEL, "mass", [0.5, 1.0], [500.0, 541.0], "stiffness", [0.2, 0.6], known={1.0: alone}, jobs=1
+        )
 
 
 def test_small_arrays_survive_their_files(tmp_path):
