@@ -17,7 +17,8 @@ import nbformat
 import yaml
 from doit.exceptions import TaskFailed
 
-from facegear.contents import ContentsError
+from compendium.contents import ContentsError
+from tools.imports import imported_by
 from tools.pages import bibtex, figure_index, run_times
 from tools.progress import CELLS, BuildReporter
 from tools.run_notebook import code_cells
@@ -27,6 +28,7 @@ BUILD = ROOT / "build"
 BUILD.mkdir(exist_ok=True)  # doit opens its record there before any step runs
 EXECUTED = BUILD / "executed"
 SOURCE = BUILD / "book-src"
+CODE = ROOT / "book" / "compendium"  # no page of the book
 PICTURES = BUILD / "pictures"
 PAGES = BUILD / "_build"
 PDF = BUILD / "facegear.pdf"
@@ -137,7 +139,7 @@ def task_notebook() -> Iterator[dict]:
             "file_dep": [
                 notebook,
                 *before,
-                *files("facegear", "*.py"),
+                *imported_by(notebook),
                 *inputs(notebook),
                 ROOT / "uv.lock",
                 ROOT / "tools" / "run_notebook.py",
@@ -159,7 +161,7 @@ def task_vignette() -> Iterator[dict]:
             "file_dep": [
                 EXECUTED / f"{MAP_NOTEBOOK}.ipynb",
                 script,
-                *files("facegear/plotting", "*.py"),
+                *imported_by(script),
             ],
             "targets": VIGNETTES,
         }
@@ -168,7 +170,7 @@ def task_vignette() -> Iterator[dict]:
 def stage() -> TaskFailed | None:
     """Lay out the source folder of the book: pages, executed notebooks, pictures, files for download."""
     shutil.rmtree(SOURCE, ignore_errors=True)
-    shutil.copytree(ROOT / "book", SOURCE)
+    shutil.copytree(ROOT / "book", SOURCE, ignore=shutil.ignore_patterns("compendium"))
     (SOURCE / "notebooks").mkdir()
     for notebook in NOTEBOOKS:
         content = nbformat.read(EXECUTED / notebook.name, as_version=4)
@@ -272,7 +274,7 @@ def task_book() -> dict:
         "task_dep": [f"notebook:{notebook.stem}" for notebook in IN_ORDER],
         "file_dep": [
             *(EXECUTED / notebook.name for notebook in NOTEBOOKS),
-            *files("book", "*"),
+            *(path for path in files("book", "*") if CODE not in path.parents),
             *files("data/reference", "*.nc"),
             *VIGNETTES,
             ROOT / "data" / "contents.yaml",

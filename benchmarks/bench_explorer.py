@@ -11,10 +11,10 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
-from facegear import studies
-from facegear.cell import cell_detail
-from facegear.explore import Study, map_stages
-from facegear.models import replace_parameter
+from facegear.drives import studies
+from facegear.drives.cell import cell_detail
+from facegear.drives.explore import Study, map_stages
+from facegear.floquet.models import replace_parameter
 
 CASES: tuple[tuple[str, Study, str, Mapping[str, Any]], ...] = (
     ("one pinion, bearing stiffness", studies.drive_study(), "stiffness", {}),

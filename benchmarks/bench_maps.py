@@ -37,12 +37,12 @@ from benchmarks.synthetic_disk import (
     synthetic_disk,
     synthetic_shafts,
 )
-from facegear.columns import column_spectral_radii, family_spectral_radii
-from facegear.floquet import AdaptiveMagnus, Stepwise, multipliers, transition_matrix
-from facegear.parameters import rad_per_s
-from facegear.periodic import PeriodicSystem
-from facegear.piecewise import PiecewiseChebyshev
-from facegear.stepping import aligned_edges
+from facegear.floquet.columns import column_spectral_radii, family_spectral_radii
+from facegear.floquet.multipliers import AdaptiveMagnus, Stepwise, multipliers, transition_matrix
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.stepping import aligned_edges
+from facegear.support.parameters import rad_per_s
 
 LOWEST_RPM, HIGHEST_RPM = 10.0, 1000.0
 TORSIONAL_RPM = (100.0, 1000.0)

@@ -12,8 +12,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.periodic import ContactLoad, PeriodicSystem, Rate
-from facegear.piecewise import PiecewiseChebyshev
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem, Rate
+from facegear.floquet.piecewise import PiecewiseChebyshev
 
 Array = NDArray[np.float64]
 

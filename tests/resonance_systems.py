@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from facegear.periodic import ContactLoad, PeriodicSystem
-from facegear.piecewise import PiecewiseChebyshev
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from tests.independent.monodromy import TURN
 
 CHECK = settings(deadline=None, derandomize=True, max_examples=25)

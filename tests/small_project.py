@@ -31,7 +31,8 @@ def laid_out(folder: Path) -> Path:
     (folder / "uv.lock").write_text("", encoding="utf-8")
     shutil.copytree(ROOT / "tools", folder / "tools")
     (folder / "facegear").mkdir()
-    (folder / "facegear" / "module.py").write_text("a = 1\n", encoding="utf-8")
+    (folder / "facegear" / "module.py").write_text("from facegear import other\n", encoding="utf-8")
+    (folder / "facegear" / "other.py").write_text("a = 1\n", encoding="utf-8")
     (folder / "data").mkdir()
     (folder / "data" / "contents.yaml").write_text(CONTENTS, encoding="utf-8")
     book = folder / "book"
@@ -43,7 +44,9 @@ def laid_out(folder: Path) -> Path:
         encoding="utf-8",
     )
     write_notebook(folder / "notebooks" / "03_one.ipynb", "print(1)")
-    write_notebook(folder / "notebooks" / "04_two.ipynb", "print(2)")
+    # It runs with the package of this project, and depends on what the small one has.
+    imports = "def never():\n    import facegear.module\n"
+    write_notebook(folder / "notebooks" / "04_two.ipynb", f"{imports}\nprint(2)")
     return folder
 
 

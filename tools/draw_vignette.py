@@ -6,8 +6,8 @@
 import sys
 from pathlib import Path
 
-from facegear.plotting.vignette import DARK, LIGHT, vignette
-from facegear.reference import load
+from compendium.plotting.vignette import DARK, LIGHT, vignette
+from facegear.support.labelled import load
 
 
 def main(arrays: Path, folder: Path) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import nbformat
 import yaml
 
-from facegear.contents import PrintedFigure, cited, load_contents
+from compendium.contents import PrintedFigure, cited, load_contents
 
 FIGURE_INDEX = """\
 (figure-index)=

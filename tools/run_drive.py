@@ -15,7 +15,7 @@ from nbformat.v4 import new_output
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from facegear.drive_file import DriveFileError, read_drive_file  # noqa: E402
+from facegear.drives.drive_file import DriveFileError, read_drive_file  # noqa: E402
 
 MOST_STEPS = 5
 NOTEBOOK = ROOT / "notebooks" / "your_drive.ipynb"

@@ -13,7 +13,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from facegear.reference import ReferenceFileError, VariableDifference, difference, load  # noqa: E402
+from compendium.reference import VariableDifference, difference  # noqa: E402
+from facegear.support.labelled import ArrayFileError, load  # noqa: E402
 from tools.lock import one_at_a_time  # noqa: E402
 from tools.run_notebook import NotebookFailedError, execute  # noqa: E402
 
@@ -62,7 +63,7 @@ def replace(new: Path) -> None:
     arrays = load(new)
     try:
         rows = difference(arrays, load(stored))
-    except ReferenceFileError as problem:
+    except ArrayFileError as problem:
         say(f"{new.name}: {'replaced' if stored.exists() else 'new'}, {len(arrays.variables)} arrays")
         if stored.exists():
             say(f"  {problem}")

@@ -14,8 +14,8 @@ import ipywidgets
 import plotly.graph_objects as go
 from matplotlib.figure import Figure
 
+from facegear.geometry.solids import Mesh
 from facegear.plotting.style import SKY
-from facegear.solids import Mesh
 
 
 @dataclass(frozen=True)

@@ -32,9 +32,9 @@ def campbell(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`facegear.report.campbell`.
+        From :func:`facegear.drives.report.campbell`.
     tongues : xarray.Dataset
-        From :func:`facegear.report.tongue_table`.
+        From :func:`facegear.drives.report.tongue_table`.
     """
     figure, (ax,) = panels(1, 1, 4.8)
     speed, mesh = data["speed_rpm"].values, data["mesh_frequency"].values
@@ -79,9 +79,9 @@ def growth_map(chart: xr.Dataset, tongues: xr.Dataset, value: float, axis: str, 
     Parameters
     ----------
     chart : xarray.Dataset
-        From :func:`facegear.report.growth_map`.
+        From :func:`facegear.drives.report.growth_map`.
     tongues : xarray.Dataset
-        From :func:`facegear.report.tongue_table`.
+        From :func:`facegear.drives.report.tongue_table`.
     value : float
         The drive's own value, in SI.
     axis : str
@@ -118,7 +118,7 @@ def speed_strips(tables: Mapping[str, xr.Dataset], speeds_rpm: tuple[float, floa
     Parameters
     ----------
     tables : mapping of str to xarray.Dataset
-        Name of the model to :func:`facegear.report.tongue_table`.
+        Name of the model to :func:`facegear.drives.report.tongue_table`.
     speeds_rpm : tuple of float
         Lowest and highest operating speed [rpm].
     """
@@ -152,7 +152,7 @@ def changes(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`facegear.changes.effects_of_changes`.
+        From :func:`facegear.design.changes.effects_of_changes`.
     """
     names = data["change_name"].values.tolist()
     figure, (ax,) = panels(1, 1, 0.36 * len(names) + 1.2)

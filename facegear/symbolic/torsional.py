@@ -138,7 +138,7 @@ def shape_vector() -> Any:
 
 @cache
 def rank_one_matrices() -> Matrices:
-    """M0 + 0, C0 + Σ c_m φφᵀ, K0 + Σ (k_m φφᵀ + c_m φφ̇ᵀ): the form of :mod:`facegear.periodic`."""
+    """M0 + 0, C0 + Σ c_m φφᵀ, K0 + Σ (k_m φφᵀ + c_m φφ̇ᵀ): the form of :mod:`facegear.floquet.periodic`."""
     absent = {k_m: 0, c_m: 0}
     mass, damping, stiffness = (matrix.subs(absent) for matrix in matrices())
     for radius in RADII:

@@ -18,10 +18,10 @@ from scipy.optimize import brentq
 from tqdm import tqdm
 
 from facegear import ContactPath, replace_parameter, tongues
-from facegear.cases import CASE_1, CASE_2, FIGURES
+from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES
 from tests.independent import meshing_mpmath
 from tests.independent.complex_galerkin import Pinion, first_order_growth, multipliers, total_rate_multipliers
-from tests.test_transverse import complex_disk
+from tests.mechanics.test_transverse import complex_disk
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "anchors"
 ROUTE = (

@@ -14,8 +14,8 @@ from mpmath import mpf
 from tqdm import tqdm
 
 import facegear as fg
-from facegear.tooth_design import constant_diametral_pitch, constant_pitch_radius
-from facegear.tracing import tongues
+from facegear.design.teeth import constant_diametral_pitch, constant_pitch_radius
+from facegear.maps.tracing import tongues
 from tests.independent import meshing_mpmath
 from tests.independent.make_anchors_ch04 import FOLDER, ROUTE, anchor, rpm, spectral_radius
 

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from tqdm import tqdm
 
 from facegear import ContactPath
-from facegear.cases import EXAMPLE_A, EXAMPLE_B
+from facegear.mechanics.cases import EXAMPLE_A, EXAMPLE_B
 from tests.independent.complex_galerkin import Pinion, multipliers
 from tests.independent.make_anchors_ch04 import (
     FOLDER,
@@ -29,7 +29,7 @@ from tests.independent.make_anchors_ch04 import (
     rpm,
     write,
 )
-from tests.test_transverse import complex_disk
+from tests.mechanics.test_transverse import complex_disk
 
 BORDER_ROUTE = ROUTE + "; borders by root finding on the spectral radius, to 1e-3 rpm"
 SUM_ROUTE = "tests/independent/make_anchors_ch05.py: closed form with 30 digits by mpmath"

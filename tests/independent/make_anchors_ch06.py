@@ -14,9 +14,9 @@ import numpy as np
 from scipy.optimize import brentq
 from tqdm import tqdm
 
-from facegear.cases import CASE_1, CASE_2, FIGURES, POWER_SPEED_RPM, POWERS_HP
-from facegear.envelope import largest_power
-from facegear.models import replace_parameter
+from facegear.design.envelope import largest_power
+from facegear.floquet.models import replace_parameter
+from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES, POWER_SPEED_RPM, POWERS_HP
 from tests.independent.complex_galerkin import ComplexDisk, multipliers
 from tests.independent.edge_load import LoadedDisk, at_rest, shot
 from tests.independent.make_anchors_ch04 import (
@@ -28,7 +28,7 @@ from tests.independent.make_anchors_ch04 import (
     rpm,
     write,
 )
-from tests.test_transverse import complex_disk, unitary
+from tests.mechanics.test_transverse import complex_disk, unitary
 
 HORSEPOWER = 745.69987
 SHOT_ROUTE = "tests/independent/edge_load.py: plane displacements of (6-2), (6-3) shot from the bore by DOP853 at 1e-13"

@@ -16,8 +16,8 @@ import yaml
 from scipy.optimize import brentq
 from tqdm import tqdm
 
-from facegear.gearboxes import DRIVE, FIGURES
-from facegear.models import replace_parameter
+from facegear.floquet.models import replace_parameter
+from facegear.mechanics.gearboxes import DRIVE, FIGURES
 from tests.independent.torsional_switching import matrices, numbers_of, skew_line, spectral_radius
 
 FOLDER = Path(__file__).resolve().parents[2] / "data" / "anchors"

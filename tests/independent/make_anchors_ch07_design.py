@@ -17,10 +17,10 @@ import yaml
 from scipy.integrate import solve_ivp
 
 import facegear as fg
-from facegear.closing import growth_peaks, largest_growth
-from facegear.gearboxes import DRIVE, FIGURES
-from facegear.modulation_arrays import ScaledModulation, undamped
-from facegear.tracing import tongues
+from compendium.datasets.modulation import ScaledModulation, undamped
+from facegear.maps.closing import growth_peaks, largest_growth
+from facegear.maps.tracing import tongues
+from facegear.mechanics.gearboxes import DRIVE, FIGURES
 from tests.independent import meshing_mpmath, torsional_switching
 from tests.independent.torsional_switching import numbers_of
 
@@ -216,7 +216,7 @@ def variants(name):
     still = replace(plain, R1=constant, R2=constant)
     still_pairs = replace(pairs, R1=constant, R2=constant)
     chosen = {0: (plain, None), 1: (still, None), 4: (pairs, None), 5: (soft, None), 6: (still_pairs, None)}
-    from facegear.torsional_design_arrays import variants as of_package
+    from compendium.datasets.torsional_design import variants as of_package
 
     models = list(of_package(gearbox).values())
     low, high = (float(fg.rad_per_s(limit)) for limit in (140.0, 1500.0))

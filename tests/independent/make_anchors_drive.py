@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 from scipy.optimize import brentq
 
-from facegear.cases import CASE_1
+from facegear.mechanics.cases import CASE_1
 from tests.independent.complex_galerkin import multipliers
 from tests.independent.make_anchors_ch04 import (
     RADIUS_TOLERANCE,

@@ -1,0 +1,420 @@
+"""Arrays of chapter 3's figures, labelled, with units and the tolerances at which they are checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from scipy.optimize import brentq
+
+from facegear.geometry import flanks
+from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import ContactPath, PairStates, SkewLine
+from facegear.support.labelled import variable
+from facegear.support.parameters import FloatArray, integer_at_least
+from facegear.symbolic import meshing
+
+# The geometry is exact to rounding; what a different machine or library changes stays well below these.
+_length = partial(variable, units="m", atol=1e-11)
+_angle = partial(variable, units="rad", atol=1e-10)
+_number = partial(variable, units="1", atol=1e-10)
+
+
+def describe(drive: Drive, **more: float) -> str:
+    """Parameters of a figure as text, for its provenance."""
+    values = {
+        "pinion_teeth": drive.pinion_teeth,
+        "gear_teeth": drive.gear_teeth,
+        "module_mm": round(drive.module * 1e3, 9),
+        "pressure_angle_deg": round(float(np.degrees(drive.pressure_angle)), 9),
+        "shaft_angle_deg": round(float(np.degrees(drive.shaft_angle)), 9),
+        **more,
+    }
+    return ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
+
+
+def tooth_and_contact_lines(drive: Drive, lines: int = 13, points: int = 33) -> xr.Dataset:
+    """Compute the generated tooth with its contact lines and contact points (Figs 3.5, 3.8), in the gear's frame Γ2.
+
+    Parameters
+    ----------
+    drive : Drive
+    lines : int, optional
+        Contact lines, equally spaced in rotation from first to last contact; those two have no length.
+    points : int, optional
+        Points on each line.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``surface`` (flank, along, across, axis), ``line`` (fraction, point, axis), ``midpoint`` (fraction, axis) [m],
+        ``length`` (fraction) [m], ``contact_radius`` (fraction) [m], ``contact_angle`` (fraction) [rad].
+    """
+    lines = integer_at_least("lines", lines, 3)
+    fraction = np.linspace(0.0, 1.0, lines)
+    rotation = drive.entry_rotation * (1.0 - fraction) + drive.exit_rotation * fraction
+    contact = drive.contact_lines(rotation)
+    region = drive.contact_region
+    # A fixed point turned back with the gear is the point on its tooth: gear_to_fixed at the opposite rotation.
+    midpoint = flanks.gear_to_fixed(region, contact.contact_point, -rotation)
+    return xr.Dataset(
+        {
+            "surface": _length(
+                ("flank", "along", "across", "axis"),
+                np.stack([drive.tooth_flank(flank=side).points for side in (1, -1)]),
+                "Points of both flanks",
+            ),
+            "line": _length(("fraction", "point", "axis"), contact.gear_points(points), "Contact lines"),
+            "midpoint": _length(("fraction", "axis"), midpoint, "Contact points"),
+            "length": _length("fraction", contact.length, "Length of the contact line"),
+            "contact_radius": _length("fraction", contact.radius, "Radius of the contact point"),
+            "contact_angle": _angle("fraction", contact.angle, "Angle of the contact point, fixed in space"),
+        },
+        coords={"fraction": fraction, "flank": [1, -1]},
+        attrs={"parameters": describe(drive)},
+    )
+
+
+def _pairs(states: PairStates) -> dict[str, np.ndarray]:
+    """Radius, angle and length with NaN where a pair is not in mesh."""
+    return {
+        name: np.where(states.in_contact, getattr(states, name), np.nan)
+        for name in ("radius", "angle", "length")
+    }
+
+
+def contact_point_positions(
+    drive: Drive, contact_ratio: float, pairs: int = 4, samples: int = 401
+) -> xr.Dataset:
+    """Positions of the contact points of successive tooth pairs against the rotation of the face gear (Fig. 3.9).
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float
+        Mesh periods that a pair stays in mesh.
+    pairs, samples : int, optional
+        Tooth pairs that enter one after the other, and instants.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``radius`` [m] and ``angle`` [rad] over (pair, time), NaN where a pair is not in mesh; ``time`` in mesh
+        periods. The attribute ``instants`` holds the instants A (the second pair enters), B (the first leaves) and
+        C (the third enters).
+    """
+    path = ContactPath(drive, contact_ratio)
+    time = np.linspace(0.0, pairs - 1.0 + contact_ratio, samples)
+    states = _pairs(path.overlaid(pairs, time * drive.angular_pitch))
+    return xr.Dataset(
+        {
+            "radius": _length(("pair", "time"), states["radius"], "Radius of the contact point"),
+            "angle": _angle(("pair", "time"), states["angle"], "Angle of the contact point"),
+        },
+        coords={"pair": np.arange(1, pairs + 1), "time": time},
+        attrs={
+            "parameters": describe(drive, contact_ratio=contact_ratio),
+            "instants": np.array([1.0, contact_ratio, 2.0]),
+        },
+    )
+
+
+def contact_centroid_instants(drive: Drive, contact_ratio: float, instants: Sequence[float]) -> xr.Dataset:
+    """Contact lines, contact points and centroid on the gear plane at chosen instants (Figs 3.10, 3.11).
+
+    Where they truly lie on the tooth: the travel about the gear's axis is not compressed with the contact ratio.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float
+        Mesh periods that a pair stays in mesh.
+    instants : sequence of float
+        Times in mesh periods, each in [0, 1).
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (instant, pair): ``line_across`` and ``line_radial`` (with ``point``), ``point_across``,
+        ``point_radial``, ``length`` [m], NaN for a pair not in mesh; over instant: ``centroid_across``,
+        ``centroid_radial`` [m].
+    """
+    time = np.asarray(instants, dtype=float)
+    pairs = np.arange(int(np.ceil(contact_ratio)))
+    fraction = (time[:, None] + pairs) / contact_ratio
+    in_mesh = fraction <= 1.0
+    contact = drive.contact_lines(
+        drive.entry_rotation * (1.0 - fraction[in_mesh]) + drive.exit_rotation * fraction[in_mesh]
+    )
+
+    def spread(values: FloatArray) -> FloatArray:
+        """Values of the pairs in mesh over (instant, pair), NaN elsewhere."""
+        array = np.full((*fraction.shape, *values.shape[1:]), np.nan)
+        array[in_mesh] = values
+        return array
+
+    lines, length = spread(contact.fixed_points()), spread(contact.length)
+    radius, angle = spread(contact.radius), spread(contact.angle)
+    weight = np.nan_to_num(length) / np.nansum(length, axis=1, keepdims=True)
+    mean_radius, mean_angle = (np.sum(weight * np.nan_to_num(each), axis=1) for each in (radius, angle))
+    both = ("instant", "pair")
+    return xr.Dataset(
+        {
+            "line_across": _length((*both, "point"), lines[..., 0], "Contact line, across"),
+            "line_radial": _length((*both, "point"), -lines[..., 1], "Contact line, radial"),
+            "point_across": _length(both, np.sin(angle) * radius, "Contact point, across"),
+            "point_radial": _length(both, np.cos(angle) * radius, "Contact point, radial"),
+            "length": _length(both, length, "Length of the contact line"),
+            "centroid_across": _length(
+                "instant", np.sin(mean_angle) * mean_radius, "Contact centroid, across"
+            ),
+            "centroid_radial": _length(
+                "instant", np.cos(mean_angle) * mean_radius, "Contact centroid, radial"
+            ),
+        },
+        coords={"instant": time, "pair": pairs + 1},
+        attrs={"parameters": describe(drive, contact_ratio=contact_ratio)},
+    )
+
+
+def contact_centroid_motion(drive: Drive, contact_ratio: float, samples: int = 401) -> xr.Dataset:
+    """Contact points and contact centroid over two mesh periods (Fig. 3.12).
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float
+        Mesh periods that a pair stays in mesh.
+    samples : int, optional
+        Instants.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``radius`` [m], ``angle`` [rad] over (pair, time), NaN where not in mesh; ``centroid_radius``
+        [m] and ``centroid_angle`` [rad] over ``time`` in mesh periods.
+    """
+    path = ContactPath(drive, contact_ratio)
+    time = np.linspace(0.0, 2.0, samples)
+    # Pairs that entered before the first instant are shown too.
+    count = path.pairs + 1
+    states = _pairs(path.overlaid(count + 1, (time + path.pairs - 1) * drive.angular_pitch))
+    centroid = path.centroid(time)
+    return xr.Dataset(
+        {
+            "radius": _length(("pair", "time"), states["radius"], "Radius of the contact point"),
+            "angle": _angle(("pair", "time"), states["angle"], "Angle of the contact point"),
+            "centroid_radius": _length("time", centroid.radius, "Radius of the contact centroid"),
+            "centroid_angle": _angle("time", centroid.angle, "Angle of the contact centroid"),
+        },
+        coords={"pair": np.arange(count + 1), "time": time},
+        attrs={"parameters": describe(drive, contact_ratio=contact_ratio)},
+    )
+
+
+def mesh_length(drive: Drive, contact_ratio: float, samples: int = 201) -> xr.Dataset:
+    """Total length of the contact lines of all pairs in mesh over one mesh period.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float
+        Mesh periods that a pair stays in mesh.
+    samples : int, optional
+        Instants.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``total_length`` [m] over ``time`` in mesh periods.
+    """
+    time = np.linspace(0.0, 1.0, samples)
+    total = ContactPath(drive, contact_ratio).pair_states(time).length.sum(axis=0)
+    return xr.Dataset(
+        {"total_length": _length("time", total, "Total length of the contact lines")},
+        coords={"time": time},
+        attrs={"parameters": describe(drive, contact_ratio=contact_ratio)},
+    )
+
+
+def skew_lines(drive: Drive, contact_ratio: float, pairs: int = 3, samples: int = 401) -> xr.Dataset:
+    """Skew line (3-22) beside the true radius of the contact points (Fig. 3.13).
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float
+        Mesh periods that a pair stays in mesh.
+    pairs, samples : int, optional
+        Tooth pairs that enter one after the other, and instants.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``radius`` and ``skew_radius`` [m] over (pair, time), NaN where a pair is not in mesh.
+    """
+    time = np.linspace(0.0, pairs - 1.0 + contact_ratio, samples)
+    true = _pairs(ContactPath(drive, contact_ratio).overlaid(pairs, time * drive.angular_pitch))
+    age = time - np.arange(pairs)[:, None]
+    line = SkewLine(drive, contact_ratio)
+    in_mesh = (age >= 0.0) & (age <= contact_ratio)
+    whole = np.clip(np.floor(age), 0, line.pairs - 1).astype(int)
+    skew = np.take_along_axis(line.pair_states(age).radius, whole[None], axis=0)[0]
+    return xr.Dataset(
+        {
+            "radius": _length(("pair", "time"), true["radius"], "Radius of the contact point"),
+            "skew_radius": _length(
+                ("pair", "time"), np.where(in_mesh, skew, np.nan), "Radius on the skew line (3-22)"
+            ),
+        },
+        coords={"pair": np.arange(1, pairs + 1), "time": time},
+        attrs={"parameters": describe(drive, contact_ratio=contact_ratio)},
+    )
+
+
+def contact_ratios(drive: Drive, pinion_teeth: Sequence[int]) -> xr.Dataset:
+    """Contact ratios against the number of pinion teeth at the gear ratio and module of a drive (Fig. 4.3).
+
+    Parameters
+    ----------
+    drive : Drive
+        Its gear ratio N2/N1 must be a whole number.
+    pinion_teeth : sequence of int
+        N1.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``contact_ratio`` (Tregold) and ``geometric_contact_ratio`` over ``pinion_teeth``.
+
+    Raises
+    ------
+    ValueError
+        If the gear ratio is not a whole number.
+    """
+    if drive.gear_teeth % drive.pinion_teeth:
+        raise ValueError(
+            f"drive must have a whole gear ratio, got gear_teeth/pinion_teeth = {drive.gear_teeth}/{drive.pinion_teeth}"
+        )
+    ratio = drive.gear_teeth // drive.pinion_teeth
+    family = [
+        Drive(teeth, ratio * teeth, drive.module, drive.pressure_angle, drive.shaft_angle)
+        for teeth in pinion_teeth
+    ]
+    return xr.Dataset(
+        {
+            "contact_ratio": _number(
+                "pinion_teeth", [member.contact_ratio for member in family], "Contact ratio after Tregold"
+            ),
+            "geometric_contact_ratio": _number(
+                "pinion_teeth",
+                [member.geometric_contact_ratio for member in family],
+                "Contact ratio of the sweep",
+            ),
+        },
+        coords={"pinion_teeth": list(pinion_teeth)},
+        attrs={"parameters": describe(drive)},
+    )
+
+
+def limits_against_shaft_angle(drive: Drive, shaft_angles_deg: Sequence[float]) -> xr.Dataset:
+    """Limiting radii and contact ratios of a drive at other shaft angles.
+
+    Parameters
+    ----------
+    drive : Drive
+    shaft_angles_deg : sequence of float
+        γ [degree].
+
+    Returns
+    -------
+    xarray.Dataset
+        ``inner_radius``, ``outer_radius`` [m], ``contact_ratio``, ``geometric_contact_ratio`` over
+        ``shaft_angle_deg``.
+    """
+    family = [
+        Drive(
+            drive.pinion_teeth, drive.gear_teeth, drive.module, drive.pressure_angle, float(np.radians(angle))
+        )
+        for angle in shaft_angles_deg
+    ]
+
+    def column(name: str) -> list[float]:
+        return [getattr(member, name) for member in family]
+
+    return xr.Dataset(
+        {
+            "inner_radius": _length("shaft_angle_deg", column("inner_radius"), "R1, undercut"),
+            "outer_radius": _length("shaft_angle_deg", column("outer_radius"), "R2, pointed"),
+            "contact_ratio": _number(
+                "shaft_angle_deg", column("contact_ratio"), "Contact ratio after Tregold"
+            ),
+            "geometric_contact_ratio": _number(
+                "shaft_angle_deg", column("geometric_contact_ratio"), "Contact ratio of the sweep"
+            ),
+        },
+        coords={"shaft_angle_deg": list(shaft_angles_deg)},
+        attrs={"parameters": describe(drive)},
+    )
+
+
+def undercut_condition(drive: Drive, tangents: Sequence[float]) -> xr.Dataset:
+    """Condition of undercutting over the tangent of the local pressure angle, and its real roots.
+
+    Parameters
+    ----------
+    drive : Drive
+    tangents : sequence of float
+        t = tan(φs + θ0s + θs*).
+
+    Returns
+    -------
+    xarray.Dataset
+        ``value``, left minus right side of the condition, over ``tangent``; ``roots``, ascending, over ``root``.
+    """
+    s = meshing
+    condition = s.compiled(s.undercut_condition, s.t, s.p, s.q, s.theta_star)
+    gamma_m = np.pi - drive.shaft_angle
+    p, q = drive.gear_ratio * np.sin(gamma_m), 1.0 - drive.gear_ratio * np.cos(gamma_m)
+    tangent = np.asarray(tangents, dtype=float)
+    return xr.Dataset(
+        {
+            "value": _number(
+                "tangent", condition(tangent, p, q, drive.shaper_tip_roll), "Left minus right side"
+            ),
+            "roots": _number("root", np.array(drive.undercut_roots), "Real roots"),
+        },
+        coords={"tangent": tangent},
+        attrs={"parameters": describe(drive)},
+    )
+
+
+def top_land(drive: Drive, samples: int = 101) -> xr.Dataset:
+    """Thickness of the tooth at its top along the face width, a little past the nominal outer end.
+
+    Parameters
+    ----------
+    drive : Drive
+    samples : int, optional
+        Radii from R1 to R2.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``thickness`` [m] over ``distance``, the distance of the generating section from the gear's axis [m];
+        ``pointed_distance`` where it vanishes [m].
+    """
+    distance = np.linspace(drive.inner_radius, drive.outer_radius, samples)
+    pointed = brentq(
+        lambda r: float(drive.top_thickness(r)), drive.inner_radius, drive.outer_radius, xtol=1e-15
+    )
+    return xr.Dataset(
+        {
+            "thickness": _length("distance", drive.top_thickness(distance), "Thickness of the top land"),
+            "pointed_distance": _length((), pointed, "Distance at which the true tooth is pointed"),
+        },
+        coords={"distance": distance},
+        attrs={"parameters": describe(drive)},
+    )

@@ -1,0 +1,465 @@
+"""Arrays of chapter 7's figures, labelled, with units and the tolerances at which they are checked.
+
+Every row of a map is one gearbox: its transition matrices are smooth in 1/speed and are interpolated there, to the
+accuracy of the rule that computes them, so that hundreds of columns cost as much as some tens. Tongues between the
+columns are traced by :func:`facegear.maps.tracing.borders`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.optimize import minimize_scalar
+
+from facegear.floquet.hsu import SpeedBand, band_speeds
+from facegear.floquet.modal import ModalExpansion, standard_form
+from facegear.floquet.models import replace_parameter
+from facegear.floquet.multiplier_curves import MultiplierCurve
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.radau import Radau
+from facegear.maps.tracing import borders, tongues
+from facegear.mechanics.gearboxes import HIGHEST_SPEED_RPM, ProportionalGearbox, TorsionalFigure
+from facegear.support.labelled import filled_labels, filled_rows, text, variable
+from facegear.support.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
+
+METHOD = Radau()
+"""Rule of all maps and tongues of the chapter: shafts are stiff and damped."""
+
+HIGHEST_ORDER = 6
+"""Highest order s at which Hsu's bands are looked for."""
+
+_growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
+_speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
+# Speeds at which Hsu's combinations are first compared: natural frequencies hardly depend on speed here.
+_HSU_POINTS = 9
+# Natural frequencies further apart than this ratio do not know of one another.
+_NEIGHBOURS = 3.0
+
+
+def describe(model: ProportionalGearbox) -> str:
+    """Parameters of a gearbox as text, for the provenance of a figure."""
+    values = {
+        "correction_factor": model.correction_factor,
+        "J2/J1": model.gear_inertia,
+        "Jo/J1": model.load_inertia,
+        "k1/km": model.input_stiffness,
+        "k2/km": model.output_stiffness,
+        "cm/km_s": model.mesh_damping,
+        "c1/k1_s": model.input_damping,
+        "c2/k2_s": model.output_damping,
+        "contact_ratio": model.mesh_contact_ratio,
+    }
+    numbers = ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
+    return f"{numbers}, arm = {model.arm}, path = {model.path}"
+
+
+def axis_values(figure: TorsionalFigure, count: int) -> FloatArray:
+    """Values of the swept parameter of a figure, evenly spread over its axis, ends included.
+
+    Parameters
+    ----------
+    figure : TorsionalFigure
+    count : int
+        Number of values, at least 2.
+
+    Returns
+    -------
+    ndarray, shape (count,)
+    """
+    count = integer_at_least("count", count, 2)
+    if figure.scale == "log":
+        return np.geomspace(figure.lowest, figure.highest, count)
+    return np.linspace(figure.lowest, figure.highest, count)
+
+
+def natural_frequencies(figure: TorsionalFigure, count: int = 201) -> xr.Dataset:
+    """Natural frequencies of the gearbox at rest over the axis of a figure, and where they veer (Figs 7.8, 7.10).
+
+    Parameters
+    ----------
+    figure : TorsionalFigure
+    count : int, optional
+        Values of the swept parameter.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``frequency`` (mode, parameter) [Hz], ``natural_speed`` (mode, parameter) [rpm] (7-20); ``veering`` (pair),
+        value of the parameter at which neighbouring frequencies come closest in ratio inside the axis, and
+        ``closest`` (pair), their ratio less 1 there; NaN for pairs that only draw apart or together, or
+        that stay further apart than a factor of three.
+    """
+    values = axis_values(figure, count)
+    frequencies = np.stack([_frequencies(figure, value) for value in values.tolist()], axis=1)
+    ratios = frequencies[1:] / frequencies[:-1]
+    veering = np.full(len(ratios), np.nan)
+    closest = np.full(len(ratios), np.nan)
+    for pair, ratio in enumerate(ratios):
+        at = int(np.argmin(ratio))
+        if 0 < at < count - 1 and ratio[at] < _NEIGHBOURS:
+
+            def apart(logarithm: float, pair: int = pair) -> float:
+                both = _frequencies(figure, float(np.exp(logarithm)))
+                return float(both[pair + 1] / both[pair])
+
+            around = np.log(values[[at - 1, at + 1]])
+            found = minimize_scalar(apart, bounds=tuple(around), method="bounded", options={"xatol": 1e-10})
+            veering[pair], closest[pair] = np.exp(found.x), found.fun - 1.0
+    modes = np.arange(1, len(frequencies) + 1)
+    both = ("mode", figure.parameter)
+    speeds = rpm(frequencies / figure.model().gearbox.drive.gear_teeth)
+    return xr.Dataset(
+        {
+            "frequency": variable(
+                both, frequencies / (2 * np.pi), "Natural frequency at rest", "Hz", rtol=1e-9
+            ),
+            "natural_speed": variable(both, speeds, "Natural speed of the face gear", "rpm", rtol=1e-9),
+            # The place of a minimum is known to the square root of the accuracy of the values around it.
+            "veering": variable(
+                "pair", veering, f"{figure.parameter} where neighbours come closest", "1", rtol=1e-4
+            ),
+            "closest": variable(
+                "pair", closest, "Least ratio of neighbours less 1", "1", rtol=1e-5, atol=1e-10
+            ),
+        },
+        coords={"mode": modes, figure.parameter: values, "pair": modes[:-1]},
+        attrs={
+            "parameters": f"{describe(figure.model())}, swept = {figure.parameter}",
+            "scale": figure.scale,
+        },
+    )
+
+
+def _frequencies(figure: TorsionalFigure, value: float) -> FloatArray:
+    """Natural frequencies at rest, shape (3,) [rad/s]."""
+    return replace_parameter(figure.model(), figure.parameter, value).torsional.natural_frequencies()
+
+
+def moment_arms(model: ProportionalGearbox, count: int = 201) -> xr.Dataset:
+    """Moment arms of the mesh force about the face-gear axis over two mesh periods, as printed and as conjugate.
+
+    Parameters
+    ----------
+    model : ProportionalGearbox
+    count : int, optional
+        Instants of one mesh period.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``printed`` (pair, time) [m], r(t) cos α_c of (7-3) for each tooth pair in contact, NaN out of contact;
+        ``conjugate`` [m], r_b1 N2/N1; ``pairs`` (time), number of tooth pairs in mesh; ``time`` in mesh periods.
+    """
+    count = integer_at_least("count", count, 2)
+    time = 2.0 * (np.arange(2 * count) + 0.5) / (2 * count)
+    arms = np.stack([-shape(time)[:, 1] for shape in model.torsional.shapes])
+    in_mesh = arms > 0.0
+    drive = model.gearbox.drive
+    return xr.Dataset(
+        {
+            "printed": variable(
+                ("pair", "time"), np.where(in_mesh, arms, np.nan), "Arm r cos α_c", "m", rtol=1e-9
+            ),
+            "conjugate": variable(
+                (), drive.base_radius / drive.gear_ratio, "Arm r_b1 N2/N1", "m", rtol=1e-12
+            ),
+            "pairs": variable("time", in_mesh.sum(axis=0).astype(float), "Tooth pairs in mesh", "1"),
+        },
+        coords={"pair": np.arange(len(arms)), "time": time},
+        attrs={"parameters": describe(model)},
+    )
+
+
+def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
+    """Growth rates of one gearbox over speed.
+
+    Parameters
+    ----------
+    model : ProportionalGearbox
+    speeds_rpm : array_like, shape (S,)
+        Speeds of the face gear [rpm].
+
+    Returns
+    -------
+    ndarray, shape (S,)
+        ln(max|λ|)/T0 [1/s].
+    """
+    speeds = np.asarray(rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm")))
+    # A little further than asked for: a single speed is a row as well.
+    curve = MultiplierCurve.of(model, 0.999 * float(speeds.min()), 1.001 * float(speeds.max()), METHOD)
+    per_second = speeds * model.gearbox.drive.gear_teeth / (2 * np.pi)
+    return np.asarray(np.log(curve.spectral_radii(speeds)) * per_second, dtype=float)
+
+
+def growth_map(
+    figure: TorsionalFigure, speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = -1, **options: Any
+) -> xr.Dataset:
+    """Growth rates over speed and the swept parameter of a figure.
+
+    Parameters
+    ----------
+    figure : TorsionalFigure
+    speeds_rpm : array_like
+        Speeds of the face gear [rpm], ascending.
+    values : array_like
+        Values of the parameter.
+    jobs : int, optional
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
+    **options
+        Fields of the gearbox that replace those of the caption, such as ``arm="conjugate"``.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``growth_rate`` (parameter, speed_rpm) [1/s], unstable where positive.
+    """
+    from joblib import Parallel, delayed
+
+    array = finite_array("values", values)
+    base = figure.model(**options)
+    models = [replace_parameter(base, figure.parameter, value) for value in array.tolist()]
+    rows = Parallel(n_jobs=jobs)(delayed(growth_row)(model, speeds_rpm) for model in models)
+    both = (figure.parameter, "speed_rpm")
+    return xr.Dataset(
+        {"growth_rate": _growth(both, np.stack(rows), "Growth rate ln(max|λ|)/T0")},
+        coords={figure.parameter: array, "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
+        attrs={"parameters": f"{describe(base)}, swept = {figure.parameter}", "scale": figure.scale},
+    )
+
+
+def stability_figure(
+    figure: TorsionalFigure,
+    *,
+    columns: int = 400,
+    rows: int = 32,
+    sections: int = 4,
+    jobs: int = -1,
+) -> xr.Dataset:
+    """Map of growth rates with traced borders and Hsu's bands (one of Figs 7.9, 7.11, 7.12, 7.13).
+
+    Parameters
+    ----------
+    figure : TorsionalFigure
+    columns, rows : int, optional
+        Speeds from the figure's lowest to the highest one, and values of the parameter.
+    sections : int, optional
+        Values of the parameter, evenly spread over the axis from its middle cell on, at which borders are traced.
+    jobs : int, optional
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``growth_rate`` as :func:`growth_map`; ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] of
+        the tongues over (section, tongue); ``hsu_lower``, ``hsu_upper`` and ``hsu_centre`` [rpm] over (section,
+        band); NaN beyond the tongues and bands of a section. Labels in the coordinates ``label`` and
+        ``hsu_label``, empty there.
+    """
+    columns = integer_at_least("columns", columns, 2)
+    speeds = np.linspace(figure.lowest_rpm, HIGHEST_SPEED_RPM, columns)
+    chart = growth_map(figure, speeds, axis_values(figure, rows), jobs=jobs)
+    places = axis_values(figure, 2 * integer_at_least("sections", sections, 1) + 1)[1::2]
+    traced = traced_sections(figure, places, jobs=jobs)
+    hsu = hsu_sections(figure, places)
+    return chart.assign({**traced.data_vars, **hsu.data_vars})
+
+
+def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = -1) -> xr.Dataset:
+    """Traced borders of all tongues at some values of the swept parameter.
+
+    Parameters
+    ----------
+    figure : TorsionalFigure
+    values : array_like, shape (V,)
+    jobs : int, optional
+        Number of processes, as joblib's ``n_jobs``; -1 for all processors.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] over (section, tongue); coordinate
+        ``label``.
+    """
+    low, high = rad_per_s(figure.lowest_rpm), rad_per_s(HIGHEST_SPEED_RPM)
+    found = [
+        section.tongues
+        for section in borders(figure.model(), figure.parameter, values, low, high, method=METHOD, jobs=jobs)
+    ]
+    both = ("section", "tongue")
+    tables = {name: filled_rows(found, name) for name in ("lower", "upper", "peak", "growth_rate")}
+    return xr.Dataset(
+        {
+            "lower": _speed(both, rpm(tables["lower"]), "Lower border"),
+            "upper": _speed(both, rpm(tables["upper"]), "Upper border"),
+            "peak": variable(both, rpm(tables["peak"]), "Speed of the largest growth", "rpm", atol=0.1),
+            "largest_growth": _growth(both, tables["growth_rate"], "Largest growth rate of the tongue"),
+        },
+        coords={
+            "section": np.asarray(values, dtype=float),
+            "label": text(both, filled_labels(found), "Label of the tongue"),
+        },
+    )
+
+
+def printed_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
+    """Expansion about the mean as the dissertation has it (7-16 to 7-19)."""
+    return standard_form(system, order).expansion()
+
+
+def hsu_bands(model: ProportionalGearbox, speeds_rpm: tuple[float, float]) -> tuple[SpeedBand, ...]:
+    """Hsu's bands of speed as the dissertation has them: each pair of frequencies alone (7-16 to 7-19, 2-26).
+
+    Parameters
+    ----------
+    model : ProportionalGearbox
+    speeds_rpm : tuple of float
+        Lowest and highest speed of the face gear [rpm].
+    """
+    speeds = (float(rad_per_s(speeds_rpm[0])), float(rad_per_s(speeds_rpm[1])))
+    return band_speeds(
+        model.system, speeds, order=HIGHEST_ORDER, points=_HSU_POINTS, reach=0.0, expand=printed_expansion
+    )
+
+
+def block_bands(model: ProportionalGearbox, speeds_rpm: tuple[float, float]) -> tuple[SpeedBand, ...]:
+    """First-order bands of speed when further frequencies in resonance join a pair; as :func:`hsu_bands`."""
+    speeds = (float(rad_per_s(speeds_rpm[0])), float(rad_per_s(speeds_rpm[1])))
+    return band_speeds(
+        model.system, speeds, order=HIGHEST_ORDER, points=_HSU_POINTS, expand=printed_expansion
+    )
+
+
+def hsu_sections(figure: TorsionalFigure, values: ArrayLike) -> xr.Dataset:
+    """Hsu's bands at some values of the swept parameter.
+
+    Parameters
+    ----------
+    figure : TorsionalFigure
+    values : array_like, shape (V,)
+
+    Returns
+    -------
+    xarray.Dataset
+        ``hsu_lower``, ``hsu_upper`` and ``hsu_centre`` [rpm] over (section, band); coordinate ``hsu_label``.
+    """
+    array = finite_array("values", values)
+    span = (figure.lowest_rpm, HIGHEST_SPEED_RPM)
+    models = [replace_parameter(figure.model(), figure.parameter, value) for value in array.tolist()]
+    found = [hsu_bands(model, span) for model in models]
+    both = ("section", "band")
+    names = {
+        "lower": "Lower border after Hsu",
+        "upper": "Upper border after Hsu",
+        "centre": "Speed at which natural frequencies combine",
+    }
+    return xr.Dataset(
+        {f"hsu_{name}": _speed(both, rpm(filled_rows(found, name)), what) for name, what in names.items()},
+        coords={"section": array, "hsu_label": text(both, filled_labels(found), "Label of the band")},
+    )
+
+
+def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
+    """Resonances of one gearbox by Floquet's and by Hsu's method, side by side.
+
+    Parameters
+    ----------
+    figure : TorsionalFigure
+    value : float
+        Value of the swept parameter.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``resonance``, ascending by speed: ``floquet``, ``hsu`` and ``blocks`` (resonance, border) [rpm], lower
+        and upper border after Floquet, Hsu's pairs and Hsu's method with all frequencies in resonance together; NaN
+        where a method finds none; ``largest_growth`` [1/s]. Labels in the coordinate ``label``; a second tongue of
+        the same modes and order has a prime.
+    """
+    model = replace_parameter(figure.model(), figure.parameter, value)
+    span = (figure.lowest_rpm, HIGHEST_SPEED_RPM)
+    traced = tongues(model, rad_per_s(span[0]), rad_per_s(span[1]), method=METHOD)
+    routes = {"floquet": traced, "hsu": hsu_bands(model, span), "blocks": block_bands(model, span)}
+    bands = {name: _by_label(found) for name, found in routes.items()}
+    first = {label: ends[0] for found in reversed(bands.values()) for label, ends in found.items()}
+    labels = sorted(first, key=lambda label: float(first[label]))
+    growth = dict(zip(bands["floquet"], (tongue.growth_rate for tongue in traced), strict=True))
+    nothing = (np.nan, np.nan)
+    names = {"floquet": "Floquet", "hsu": "Hsu, pairs", "blocks": "Hsu, blocks"}
+    return xr.Dataset(
+        {
+            **{
+                name: _speed(
+                    ("resonance", "border"), [bands[name].get(label, nothing) for label in labels], what
+                )
+                for name, what in names.items()
+            },
+            "largest_growth": _growth(
+                "resonance", [growth.get(label, np.nan) for label in labels], "Growth rate"
+            ),
+        },
+        coords={
+            "resonance": np.arange(len(labels)),
+            "label": text("resonance", labels, "Label of the resonance"),
+            "border": [0, 1],
+        },
+        attrs={"parameters": f"{describe(model)}"},
+    )
+
+
+def _by_label(found: Sequence[Any]) -> dict[str, tuple[float, float]]:
+    """Borders [rpm] by label, repeated labels with primes."""
+    bands: dict[str, tuple[float, float]] = {}
+    for band in found:
+        label = band.label
+        while label in bands:
+            label += "'"
+        bands[label] = (float(rpm(band.lower)), float(rpm(band.upper)))
+    return bands
+
+
+def intervals(table: xr.Dataset, method: str) -> dict[str, tuple[float, float]]:
+    """Borders of all resonances that a method finds, by label.
+
+    Parameters
+    ----------
+    table : xarray.Dataset
+        From :func:`resonances`.
+    method : {"floquet", "hsu", "blocks"}
+
+    Returns
+    -------
+    dict of str to (float, float)
+        Lower and upper border [rpm].
+    """
+    rows = zip(table["label"].values.tolist(), table[method].values.tolist(), strict=True)
+    return {label: (low, high) for label, (low, high) in rows if np.isfinite(low)}
+
+
+def section_intervals(chart: xr.Dataset, label: str) -> dict[float, tuple[float, float]]:
+    """Traced borders of the tongue with a label over the sections of a figure.
+
+    Parameters
+    ----------
+    chart : xarray.Dataset
+        From :func:`stability_figure`.
+    label : str
+
+    Returns
+    -------
+    dict of float to (float, float)
+        Value of the swept parameter to lower and upper border [rpm], where the tongue exists.
+    """
+    found = {}
+    for number, labels in enumerate(chart["label"].values.tolist()):
+        if label in labels:
+            place = labels.index(label)
+            found[float(chart["section"][number])] = (
+                float(chart["lower"][number, place]),
+                float(chart["upper"][number, place]),
+            )
+    return found

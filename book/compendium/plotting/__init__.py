@@ -1,0 +1,1 @@
+"""Figures of the chapters. Nothing here computes: every function draws arrays that it is given."""

@@ -1,0 +1,63 @@
+from .design.body import critical_thickness as critical_thickness
+from .drives.drive_file import read_drive_file as read_drive_file
+from .floquet.hsu import resonance_bands as resonance_bands
+from .floquet.models import WithoutRigidMotion as WithoutRigidMotion
+from .floquet.models import replace_parameter as replace_parameter
+from .floquet.multipliers import error_estimate as error_estimate
+from .floquet.multipliers import growth_rate as growth_rate
+from .floquet.multipliers import multipliers as multipliers
+from .floquet.multipliers import transition_matrix as transition_matrix
+from .floquet.periodic import ContactLoad as ContactLoad
+from .floquet.periodic import PeriodicSystem as PeriodicSystem
+from .floquet.piecewise import PiecewiseChebyshev as PiecewiseChebyshev
+from .geometry.drive import Drive as Drive
+from .geometry.kinematics import ContactPath as ContactPath
+from .geometry.kinematics import SkewLine as SkewLine
+from .geometry.kinematics import mesh_period as mesh_period
+from .geometry.phases import phase_split as phase_split
+from .maps.stability_map import stability_map as stability_map
+from .maps.tracing import search_seconds as search_seconds
+from .maps.tracing import tongues as tongues
+from .mechanics.inplane import EdgeLoadStress as EdgeLoadStress
+from .mechanics.plate import Body as Body
+from .mechanics.torsional import Gearbox as Gearbox
+from .mechanics.torsional import Torsional as Torsional
+from .mechanics.transverse import Transverse as Transverse
+from .support.parameters import STEEL as STEEL
+from .support.parameters import MeshLoad as MeshLoad
+from .support.parameters import rad_per_s as rad_per_s
+from .support.parameters import rpm as rpm
+from .support.parameters import watt as watt
+
+__all__ = [
+    "STEEL",
+    "Body",
+    "ContactLoad",
+    "ContactPath",
+    "Drive",
+    "EdgeLoadStress",
+    "Gearbox",
+    "MeshLoad",
+    "PeriodicSystem",
+    "PiecewiseChebyshev",
+    "SkewLine",
+    "Torsional",
+    "Transverse",
+    "WithoutRigidMotion",
+    "critical_thickness",
+    "error_estimate",
+    "growth_rate",
+    "mesh_period",
+    "multipliers",
+    "phase_split",
+    "rad_per_s",
+    "read_drive_file",
+    "replace_parameter",
+    "resonance_bands",
+    "rpm",
+    "search_seconds",
+    "stability_map",
+    "tongues",
+    "transition_matrix",
+    "watt",
+]

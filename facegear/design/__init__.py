@@ -1,0 +1,7 @@
+"""Stability-based design: what a body, its teeth, its power and its pinions may be.
+
+Critical thickness and the flow of Fig. 4.6 (`body`), families of drives and root stress (`teeth`), critical power and
+the envelope of safe powers (`envelope`), positions of pinions that silence a tongue (`cancellation`), what to change
+first (`changes`).
+Public: `critical_thickness`.
+"""

@@ -1,0 +1,216 @@
+"""Stability-based design of the face-gear body (section 4.7): critical thickness and weight, the flow of Fig. 4.6.
+
+The critical thickness ratio of a drive is the smallest h/a above which it is stable at every operating speed. It is
+the highest tip of all lobes of instability in the chart of speed and thickness (:mod:`facegear.maps.lobes`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from facegear.design.teeth import root_stress
+from facegear.geometry.drive import Drive
+from facegear.maps.lobes import CriticalThickness, highest_lobes
+from facegear.maps.parallel import in_processes
+from facegear.mechanics.plate import THICKNESS_RATIO_RANGE, Body
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import MeshLoad, ascending, keep, positive, within
+
+
+def critical_thickness(
+    drive: Drive,
+    load: MeshLoad,
+    speed_range: tuple[float, float],
+    *,
+    thickness_range: tuple[float, float] = (0.025, 0.06),
+    contact_ratio: float | None = None,
+    nodal_circles: int = 1,
+    nodal_diameters: int = 3,
+) -> CriticalThickness:
+    """Critical thickness ratio h/a of a drive with one pinion (section 4.7.1).
+
+    Parameters
+    ----------
+    drive : Drive
+    load : MeshLoad
+        μ, ζ, τ.
+    speed_range : tuple of float
+        Operating speeds of the face gear, lowest and highest [rad/s]. The time it takes is nearly in inverse
+        proportion to the lowest.
+    thickness_range : tuple of float
+        h/a between which the highest tip is looked for.
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh; Tregold's if left out.
+    nodal_circles, nodal_diameters : int
+        M and N of the body.
+
+    Returns
+    -------
+    CriticalThickness
+        To 1e-5 in h/a.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :func:`facegear.maps.lobes.highest_lobes`, or as :class:`Transverse` for what makes up the model.
+    """
+    lowest, highest = ascending("speed_range", speed_range, "rad/s")
+    body = Body(
+        drive,
+        within("thickness_range", thickness_range[1], *THICKNESS_RATIO_RANGE),
+        nodal_circles=nodal_circles,
+        nodal_diameters=nodal_diameters,
+    )
+    model = Transverse(body, load, contact_ratio=contact_ratio)
+    (found,) = highest_lobes(_thickness_of(model), lowest, [highest], thickness_range)
+    return found
+
+
+def _thickness_of(model: Transverse) -> Callable[[float], Transverse]:
+    """Return the model as a function of its thickness ratio."""
+
+    def model_at(thickness_ratio: float) -> Transverse:
+        return replace(model, body=replace(model.body, thickness_ratio=thickness_ratio))
+
+    return model_at
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """What a design has to fulfil (Table 4.4).
+
+    Parameters
+    ----------
+    power : float
+        P [W].
+    pinion_speed : float
+        Ω1 at that power [rad/s].
+    safety_factor : float
+        SF of (4-22), 1 or greater.
+    speed_range : tuple of float
+        Operating speeds of the face gear, lowest and highest [rad/s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value is not a number or outside its range.
+    """
+
+    power: float
+    pinion_speed: float
+    safety_factor: float
+    speed_range: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            power=positive("power", self.power, "W"),
+            pinion_speed=positive("pinion_speed", self.pinion_speed, "rad/s"),
+            safety_factor=within("safety_factor", self.safety_factor, 1.0, 100.0),
+            speed_range=ascending("speed_range", self.speed_range, "rad/s"),
+        )
+
+
+@dataclass(frozen=True)
+class BodyDesign:
+    """Result of the design flow for one drive.
+
+    Attributes
+    ----------
+    body : Body
+        Face-gear body at the critical thickness.
+    critical : CriticalThickness
+        What decides it.
+    root_stress : float
+        σ_max [Pa] (4-20).
+    allowable_stress : float
+        σ_Y/SF [Pa] (4-22).
+    """
+
+    body: Body
+    critical: CriticalThickness
+    root_stress: float
+    allowable_stress: float
+
+    @property
+    def stress_safe(self) -> bool:
+        """Whether (4-22) holds."""
+        return self.root_stress < self.allowable_stress
+
+
+def design_body(
+    drive: Drive,
+    load: MeshLoad,
+    requirements: Requirements,
+    thickness_range: tuple[float, float] = (0.025, 0.06),
+) -> BodyDesign:
+    """Design a face-gear body for a drive: stress at the root, then thickness from stability (Fig. 4.6).
+
+    Parameters
+    ----------
+    drive : Drive
+    load : MeshLoad
+        μ, ζ, τ.
+    requirements : Requirements
+    thickness_range : tuple of float
+        As for :func:`critical_thickness`.
+
+    Returns
+    -------
+    BodyDesign
+        Also where the stress is too high: a family of designs shows both.
+    """
+    critical = critical_thickness(drive, load, requirements.speed_range, thickness_range=thickness_range)
+    return _design(drive, critical, requirements)
+
+
+def _design(drive: Drive, critical: CriticalThickness, requirements: Requirements) -> BodyDesign:
+    body = Body(drive, critical.thickness_ratio)
+    stress = root_stress(drive, requirements.power, requirements.pinion_speed)
+    return BodyDesign(body, critical, stress, body.material.yield_strength / requirements.safety_factor)
+
+
+def design_family(
+    drives: Sequence[Drive],
+    load: MeshLoad,
+    requirements: Requirements,
+    highest_speeds: Sequence[float],
+    thickness_range: tuple[float, float] = (0.025, 0.06),
+    jobs: int = -1,
+) -> tuple[tuple[BodyDesign, ...], ...]:
+    """Design bodies for many drives and several operating speed ranges, in parallel processes.
+
+    Parameters
+    ----------
+    drives : sequence of Drive
+    load : MeshLoad
+    requirements : Requirements
+        Its speed range gives the lowest speed.
+    highest_speeds : sequence of float
+        Upper ends of the operating speed ranges [rad/s].
+    thickness_range : tuple of float
+        As for :func:`critical_thickness`.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``.
+
+    Returns
+    -------
+    tuple of tuple of BodyDesign
+        One row a drive, one entry a highest speed in the given order.
+    """
+    work = ((drive, load, requirements, tuple(highest_speeds), thickness_range) for drive in drives)
+    return tuple(in_processes(_designs, work, jobs))
+
+
+def _designs(
+    drive: Drive,
+    load: MeshLoad,
+    requirements: Requirements,
+    highest_speeds: tuple[float, ...],
+    thickness_range: tuple[float, float],
+) -> tuple[BodyDesign, ...]:
+    """Designs of one drive."""
+    model = Transverse(Body(drive, thickness_range[1]), load)
+    found = highest_lobes(_thickness_of(model), requirements.speed_range[0], highest_speeds, thickness_range)
+    return tuple(_design(drive, critical, requirements) for critical in found)

@@ -1,0 +1,313 @@
+"""How much power a face gear bears: flutter of the disk alone, and the largest power at which a speed range is stable.
+
+A force that stays tangent to the bent rim feeds a wave which runs against it: while the rim's slope is s the force
+does work F s ∂w/∂t. In K_f of (6-27) that is the rim term of the mean shear, which couples a wave with itself only
+and makes ω² of the mode (m, n) complex,
+
+    ω² ∓ iε,    ε = n F_t R_mn(a)²/(2πρah),
+
+so that it grows at ε/(2ω) while the viscous disk takes away ξω²/2. The two are equal at ε = ξω³, at any speed: the
+loss belongs to the material and turns with it, and so do the waves. This holds for a disk alone; a pinion that holds
+the waves in place changes it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from facegear.floquet.multiplier_curves import method_for
+from facegear.floquet.multipliers import Method, growth_rate
+from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.disk import disk_matrices
+from facegear.mechanics.edge_stiffness import Following, driving_force, unit_stiffness
+from facegear.mechanics.plate import Body
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import FloatArray, positive, within
+
+# Powers, over the critical one of the disk alone, at which a disk is tried.
+_FIRST, _RATIO, _LAST = 1 / 8, 1.15, 100.0
+# The same for a whole drive, at which tongues are looked for.
+_LEVELS = (0.3, 0.6, 0.8, 1.0, 1.2, 1.5, 1.9, 2.4, 3.0)
+# Window in which the peak of a tongue is looked for as the power changes, relative to its speed.
+_WINDOW, _WIDEST = 0.004, 0.03
+_MOST_WINDOWS = 60
+_MOST_TURNS = 30
+
+
+def mode_critical_powers(body: Body, power_speed: float) -> FloatArray:
+    """Power at which each mode of the disk alone begins to flutter under a follower force, to first order.
+
+    Parameters
+    ----------
+    body : Body
+    power_speed : float
+        Ω1 at that power [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (M + 1, N + 1)
+        P = ξω³/(ε/P) [W]; infinite without nodal diameters, where the rim has no slope along the force.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `power_speed` is not a number greater than 0.
+    """
+    rim = np.stack([modes(1.0) for modes in body.modes], axis=1) / body.outer_radius
+    diameters = np.arange(body.nodal_diameters + 1)
+    material = body.material
+    growth = diameters * driving_force(body, 1.0, power_speed) * rim**2
+    growth /= 2 * math.pi * material.density * body.outer_radius * body.thickness
+    loss = material.viscous_loss_factor * body.eigenvalues**1.5
+    powers = np.full(growth.shape, math.inf)
+    np.divide(loss, growth, out=powers, where=growth > 0.0)
+    return powers
+
+
+def disk_growth_rate(
+    body: Body,
+    power: float,
+    power_speed: float,
+    speed: float,
+    *,
+    following: Following = "follower",
+    harmonics: int = 5,
+    angles: Sequence[float] = (0.0,),
+) -> float:
+    """Growth rate of the disk alone under driving forces: its largest eigenvalue's real part.
+
+    Parameters
+    ----------
+    body : Body
+    power, power_speed : float
+        P [W] of each pinion at Ω1 [rad/s].
+    speed : float
+        Ω2 of the face gear [rad/s], 0 or greater.
+    following, harmonics
+        As `following` and `stress_harmonics` of :class:`facegear.mechanics.transverse.Transverse`.
+    angles : sequence of float
+        Where the forces act [rad], one each.
+
+    Returns
+    -------
+    float
+        [1/s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range.
+    """
+    damping, stiffness = disk_matrices(body, speed)
+    force = driving_force(body, power, power_speed)
+    stiffness = stiffness + force * unit_stiffness(body, speed, harmonics, following, tuple(angles))
+    n = len(stiffness)
+    # In the state (scale·q, q') both halves are of one size.
+    scale = math.sqrt(float(np.abs(stiffness).max()))
+    state = np.block([[np.zeros((n, n)), scale * np.eye(n)], [-stiffness / scale, -damping]])
+    return float(np.linalg.eigvals(state).real.max())
+
+
+def critical_power(
+    body: Body,
+    power_speed: float,
+    speed: float,
+    *,
+    following: Following = "follower",
+    harmonics: int = 5,
+    angles: Sequence[float] = (0.0,),
+) -> float:
+    """Smallest power of each of one or more equal pinions at which the disk alone is unstable.
+
+    Powers 15 % apart are tried upwards, and the first change of stability is then found as a root.
+
+    Parameters
+    ----------
+    body : Body
+        With a viscous loss factor above 0.
+    power_speed : float
+        Ω1 at that power [rad/s].
+    speed : float
+        Ω2 of the face gear [rad/s], 0 or greater.
+    following, harmonics
+        As `following` and `stress_harmonics` of :class:`facegear.mechanics.transverse.Transverse`.
+    angles : sequence of float
+        Where the forces act [rad], one each. Follower forces add up: two of them make the disk flutter at half the
+        power of each.
+
+    Returns
+    -------
+    float
+        [W]; infinite if the disk is stable up to 100 times the power at which a follower force makes a mode flutter,
+        and without nodal diameters, where the force does no work on the rim.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range, or the disk has no damping, so that it is never
+        asymptotically stable.
+    """
+    if body.material.viscous_loss_factor == 0.0:
+        raise ValueError(
+            "viscous_loss_factor of the body's material must be greater than 0: without damping any power flutters"
+        )
+    unit = float(mode_critical_powers(body, power_speed).min())
+    if unit == math.inf:
+        return math.inf
+
+    def growth(share: float) -> float:
+        return disk_growth_rate(
+            body,
+            share * unit,
+            power_speed,
+            speed,
+            following=following,
+            harmonics=harmonics,
+            angles=angles,
+        )
+
+    low, high = 0.0, _FIRST
+    while growth(high) <= 0.0:
+        if high > _LAST:
+            return math.inf
+        low, high = high, high * _RATIO
+    return unit * float(brentq(growth, low, high, xtol=1e-12, rtol=1e-12))
+
+
+@dataclass(frozen=True)
+class PowerLimit:
+    """Largest power at which a speed range is stable.
+
+    Attributes
+    ----------
+    power : float
+        [W]; 0 if the range is not stable even without power, infinite if no limit was found.
+    speed : float
+        Ω2 where it is lost first [rad/s], NaN if nowhere.
+    label : str
+        Modes and order of the instability there, as :attr:`facegear.maps.tracing.Tongue.label`; empty if there is none.
+    """
+
+    power: float
+    speed: float
+    label: str
+
+
+def largest_power(
+    model: Transverse, lowest_speed: float, highest_speed: float, *, tolerance: float = 1e-3
+) -> PowerLimit:
+    """Largest power below which a drive is stable at all speeds of a range.
+
+    All tongues are looked for at powers that rise to 3 times the critical power of the disk alone, until there are
+    some. The strongest is followed down to the power at which its largest growth rate vanishes. Just below that all
+    tongues are looked for once more, and the strongest followed, until there are none. What can be missed is an
+    instability that comes and goes between two of the powers tried below the result.
+
+    Parameters
+    ----------
+    model : Transverse
+        With a `power_speed`; its own power does not matter.
+    lowest_speed, highest_speed : float
+        Range of Ω2 [rad/s].
+    tolerance : float
+        Relative accuracy of the power, 1e-6 to 0.1.
+
+    Returns
+    -------
+    PowerLimit
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the model has no `power_speed`, the range is not two ascending positive numbers, or the tolerance is
+        outside its range.
+    ArithmeticError
+        If the peak of a tongue is lost.
+    """
+    if model.power_speed is None:
+        raise ValueError("model must have a power and a power_speed, got None")
+    tolerance = within("tolerance", tolerance, 1e-6, 0.1)
+    low, high = (
+        positive("lowest_speed", lowest_speed, "rad/s"),
+        positive("highest_speed", highest_speed, "rad/s"),
+    )
+    unit = float(mode_critical_powers(model.body, model.power_speed).min())
+
+    def at(power: float) -> Transverse:
+        return replace(model, power=power)
+
+    if found := tongues(at(0.0), low, high):
+        worst = max(found, key=lambda tongue: tongue.growth_rate)
+        return PowerLimit(0.0, worst.peak, worst.label)
+    if unit == math.inf:
+        return PowerLimit(math.inf, math.nan, "")
+    stable, level = 0.0, 0.0
+    for share in _LEVELS:
+        stable, level = level, share * unit
+        if found := tongues(at(level), low, high):
+            break
+    lowest = PowerLimit(math.inf, math.nan, "")
+    while found:
+        strongest = max(found, key=lambda tongue: tongue.growth_rate)
+        lowest = _tip(at, stable, level, strongest, (low, high), tolerance / 2)
+        level = lowest.power * (1 - tolerance)
+        found = tongues(at(level), low, high)
+    return lowest
+
+
+def _tip(
+    at: Callable[[float], Transverse],
+    stable: float,
+    unstable: float,
+    tongue: Tongue,
+    speed_range: tuple[float, float],
+    tolerance: float,
+) -> PowerLimit:
+    """Follow a tongue down to its tip: in turn the power at which its speed is stable, and the worst speed there."""
+    method = method_for(at(unstable), *speed_range)
+    speed, power = tongue.peak, unstable
+
+    def growth(value: float) -> float:
+        return growth_rate(at(value).system(speed), method)
+
+    for _ in range(_MOST_TURNS):
+        above = power
+        power = float(brentq(growth, stable, above, rtol=tolerance / 4))
+        if power > above * (1 - tolerance):
+            return PowerLimit(power, speed, tongue.label)
+        speed, value = _peak(at(power), method, speed, speed_range)
+        if growth(stable) >= 0.0 or value <= 0.0:
+            return PowerLimit(power, speed, tongue.label)
+    raise ArithmeticError(f"the tip of tongue {tongue.label} was not found in {_MOST_TURNS} turns")
+
+
+def _peak(
+    model: Transverse, method: Method, guess: float, speed_range: tuple[float, float]
+) -> tuple[float, float]:
+    """Speed near a guess at which the growth rate is largest, and the growth rate there."""
+
+    def loss(speed: float) -> float:
+        return -growth_rate(model.system(speed), method)
+
+    lowest, highest = speed_range
+    centre, width = guess, _WINDOW
+    for _ in range(_MOST_WINDOWS):
+        low, high = max(centre * (1 - width), lowest), min(centre * (1 + width), highest)
+        result = minimize_scalar(loss, bounds=(low, high), method="bounded", options={"xatol": 3e-5 * centre})
+        best, value = float(result.x), -float(result.fun)
+        margin = 0.02 * (high - low)
+        ends = [end for end in (low, high) if abs(best - end) < margin]
+        if not ends:
+            return best, value
+        (end,) = ends
+        if end in speed_range:
+            at_end = -loss(end)
+            return (end, at_end) if at_end >= value else (best, value)
+        # Flutter of the mean system has no sharp peak, so that it may lie far away.
+        centre, width = best, min(2 * width, _WIDEST)
+    raise ArithmeticError(f"no largest growth rate near {guess:.6g} rad/s: the instability was lost")

@@ -1,0 +1,210 @@
+"""How many modes a verdict needs: the basis of a disk is raised until its unstable speeds stand still.
+
+A force at one point calls on all modes, and a basis as small as the printed one, M = 1 and N = 3, is too stiff there:
+borders of tongues move by a percent or two with more modes, and narrow tongues come and go. What stands here holds a
+drive fixed, bearings in N/m and not in parts of a stiffness that changes with the basis, and says how far it went.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.disk import disk_stiffness, reference_stiffness
+from facegear.mechanics.edge_stiffness import complete_harmonics
+from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, Body
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import FloatArray, integer_at_least, within
+
+
+def with_basis(model: Transverse, nodal_circles: int, nodal_diameters: int) -> Transverse:
+    """Return the same drive in another basis.
+
+    Bearing stiffness and damping keep their values in N/m and N s/m: μ (4-17) is measured by a stiffness of the disk
+    that falls as modes are added. Harmonics of the driving force stay complete if they were.
+
+    Parameters
+    ----------
+    model : Transverse
+    nodal_circles, nodal_diameters : int
+        M and N of the new basis.
+
+    Returns
+    -------
+    Transverse
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :class:`facegear.mechanics.plate.Body` for M and N.
+
+    Examples
+    --------
+    >>> from facegear import Body, Drive, MeshLoad, Transverse
+    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = Transverse(body, MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> richer = with_basis(model, 2, 5)
+    >>> round(richer.bearing_stiffness / model.bearing_stiffness, 12), round(richer.load.stiffness, 2)
+    (1.0, 1.04)
+    """
+    body = replace(model.body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
+    load = replace(model.load, stiffness=model.bearing_stiffness / reference_stiffness(body))
+    harmonics = model.stress_harmonics
+    if harmonics >= complete_harmonics(model.body):
+        harmonics = max(harmonics, complete_harmonics(body))
+    return replace(model, body=body, load=load, stress_harmonics=harmonics)
+
+
+def unstable_share(found: Sequence[Tongue], speed_range: tuple[float, float]) -> float:
+    """Part of a range of speed that tongues cover, 0 to 1."""
+    low, high = speed_range
+    return sum(tongue.width for tongue in found) / (high - low)
+
+
+def disagreement(
+    first: Sequence[Tongue], second: Sequence[Tongue], speed_range: tuple[float, float]
+) -> float:
+    """Part of a range of speed in which only one of two sets of tongues is unstable, 0 to 1.
+
+    No border has moved by more than this part of the range.
+
+    Parameters
+    ----------
+    first, second : sequence of Tongue
+        Both from the whole range.
+    speed_range : tuple of float
+        Lowest and highest speed [rad/s].
+    """
+    low, high = speed_range
+    both = sum(
+        max(0.0, min(one.upper, other.upper) - max(one.lower, other.lower))
+        for one in first
+        for other in second
+    )
+    return max(
+        0.0,
+        unstable_share(first, speed_range) + unstable_share(second, speed_range) - 2 * both / (high - low),
+    )
+
+
+@dataclass(frozen=True)
+class BasisStep:
+    """Tongues of a drive in one basis.
+
+    Attributes
+    ----------
+    nodal_circles, nodal_diameters : int
+        M and N.
+    tongues : tuple of Tongue
+    moved : float
+        Part of the range of speed in which this basis and the one before disagree; NaN for the first.
+    """
+
+    nodal_circles: int
+    nodal_diameters: int
+    tongues: tuple[Tongue, ...]
+    moved: float
+
+
+@dataclass(frozen=True)
+class SettledTongues:
+    """Tongues of a drive in the last of several bases.
+
+    Attributes
+    ----------
+    model : Transverse
+        The drive in that basis.
+    speed_range : tuple of float
+        Lowest and highest speed [rad/s].
+    steps : tuple of BasisStep
+        All bases, ascending.
+    settled : bool
+        Whether the last two agree on whether there is a tongue, and within the tolerance on where.
+    """
+
+    model: Transverse
+    speed_range: tuple[float, float]
+    steps: tuple[BasisStep, ...]
+    settled: bool
+
+    @property
+    def tongues(self) -> tuple[Tongue, ...]:
+        """Tongues in the last basis."""
+        return self.steps[-1].tongues
+
+    @property
+    def unstable_share(self) -> float:
+        """Part of the range of speed that is unstable, 0 to 1."""
+        return unstable_share(self.tongues, self.speed_range)
+
+
+def settled_tongues(
+    model: Transverse, speed_range: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
+) -> SettledTongues:
+    """Tongues of a drive in a basis that is raised until they stand still.
+
+    Two nodal diameters are added in each step, and a nodal circle where it changes the static stiffness of the disk at
+    its teeth by a third or more of what they do; the bearing stays as it is (:func:`with_basis`).
+
+    Parameters
+    ----------
+    model : Transverse
+        Drive in the first basis.
+    speed_range : tuple of float
+        Lowest and highest speed [rad/s].
+    tolerance : float
+        Part of the range of speed in which two bases in succession may disagree, 1e-6 to 0.5. They must also agree
+        on whether there is any tongue.
+    most_steps : int
+        Largest number of bases, at least 1; with one only, nothing is said of how good it is.
+
+    Returns
+    -------
+    SettledTongues
+        `settled` is false if the number of bases, or the largest basis there is, did not suffice.
+
+    Raises
+    ------
+    TypeError, ValueError, ArithmeticError
+        As :func:`facegear.maps.tracing.tongues`, or if an argument is outside its range.
+    """
+    tolerance = within("tolerance", tolerance, 1e-6, 0.5)
+    integer_at_least("most_steps", most_steps, 1)
+    steps: list[BasisStep] = []
+    shown = model
+    for circles, diameters in _bases(model.body, most_steps):
+        shown = with_basis(model, circles, diameters) if steps else model
+        found = tongues(shown, *speed_range)
+        moved = disagreement(steps[-1].tongues, found, speed_range) if steps else math.nan
+        steps.append(BasisStep(circles, diameters, found, moved))
+        if moved <= tolerance and bool(found) == bool(steps[-2].tongues):
+            return SettledTongues(shown, speed_range, tuple(steps), settled=True)
+    return SettledTongues(shown, speed_range, tuple(steps), settled=False)
+
+
+def _bases(body: Body, most: int) -> list[tuple[int, int]]:
+    """Give M and N of at most so many bases, up to the largest there is."""
+    found = [(body.nodal_circles, body.nodal_diameters)]
+    while len(found) < most:
+        circles, diameters = found[-1]
+        more_circles = min(circles + 1, MAX_NODAL_CIRCLES)
+        more_diameters = min(diameters + 2, MAX_NODAL_DIAMETERS)
+        here = _softness(body, circles, diameters)
+        by_circles = np.abs(_softness(body, more_circles, diameters) / here - 1.0).max()
+        by_diameters = np.abs(_softness(body, circles, more_diameters) / here - 1.0).max()
+        larger = (more_circles if by_circles >= by_diameters / 3.0 else circles, more_diameters)
+        if larger == found[-1]:
+            break
+        found.append(larger)
+    return found
+
+
+def _softness(body: Body, nodal_circles: int, nodal_diameters: int) -> FloatArray:
+    """Deflection per force of a disk at rest, at the inner, middle and outer radius of the teeth [m/N]."""
+    basis = replace(body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
+    inner, outer = body.drive.inner_radius, body.drive.outer_radius
+    return np.array([1.0 / float(disk_stiffness(basis, 0.0, r)) for r in (inner, (inner + outer) / 2, outer)])

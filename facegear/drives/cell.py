@@ -1,0 +1,191 @@
+"""One cell of a stability map: multipliers, critical motion, and the tongue that it lies in."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from facegear.floquet.labels import combination
+from facegear.floquet.models import Model
+from facegear.floquet.multipliers import transition_matrix
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.transverse import Transverse, shape_vector
+from facegear.support.parameters import positive
+
+ComplexArray = NDArray[np.complex128]
+
+UNSTABLE = 1e-8
+"""Growth in a period, max|λ| − 1, from which a cell counts as unstable [-], as for tongues."""
+
+# Tongues are looked for within these factors of the speed of a cell, the next where they pass the ends.
+_WINDOWS = (1.04, 1.2)
+_RADII, _ANGLES = 25, 121
+# Instants of a period and periods of a motion over time.
+_INSTANTS, _PERIODS = 48, 6
+
+
+@dataclass(frozen=True, eq=False)
+class CellDetail:
+    """One cell of a map.
+
+    Attributes
+    ----------
+    speed : float
+        [rad/s].
+    growth_rate : float
+        ln(max|λ|)/T0 [1/s].
+    multipliers : ndarray of complex, shape (2n,)
+        Largest modulus first.
+    critical : complex
+        The largest one, of a conjugate pair that above the real axis.
+    motion : ndarray of complex, shape (n,)
+        Displacements of the critical motion at the beginning of a mesh period; real where it is largest.
+    tongue : Tongue or None
+        The interval of instability that the speed lies in, None if it is stable.
+    label : str or None
+        Its modes and order, None if stable.
+    searched : tuple of float
+        Speeds [rad/s] between which the tongue's borders were looked for.
+    deflection : xarray.DataArray or None
+        Of a disk: critical motion over ``radius`` [m] and ``angle`` [rad], complex, largest modulus 1.
+    history : xarray.DataArray or None
+        Of anything else: critical motion over ``time`` [periods] and ``coordinate``, the largest 1.
+    """
+
+    speed: float
+    growth_rate: float
+    multipliers: ComplexArray
+    critical: complex
+    motion: ComplexArray
+    tongue: Tongue | None
+    label: str | None
+    searched: tuple[float, float]
+    deflection: xr.DataArray | None
+    history: xr.DataArray | None
+
+
+def cell_detail(model: Model, speed: float) -> CellDetail:
+    """Multipliers, critical motion and tongue of a model at one speed.
+
+    Parameters
+    ----------
+    model : Model
+    speed : float
+        [rad/s], greater than 0.
+
+    Returns
+    -------
+    CellDetail
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `speed` is not a number greater than 0.
+    """
+    speed = positive("speed", speed, "rad/s")
+    system = model.system(speed)
+    values, vectors = np.linalg.eig(transition_matrix(system))
+    # Of a conjugate pair rounding alone would decide.
+    order = np.lexsort((-values.imag, -np.abs(values).round(12)))
+    values, vectors = values[order], vectors[:, order]
+    motion = vectors[: system.size, 0]
+    radius = float(np.abs(values).max())
+    tongue, searched = None, (speed, speed)
+    if radius - 1.0 > UNSTABLE:
+        tongue, searched = _tongue_at(model, speed)
+    label = tongue.label if tongue else combination(system).label if radius - 1.0 > UNSTABLE else None
+    deflection = history = None
+    if isinstance(model, Transverse):
+        deflection, motion = _deflection(model, motion)
+    else:
+        scale = motion[np.abs(motion).argmax()]
+        motion, history = motion / scale, _history(system, vectors[:, 0] / scale, complex(values[0]))
+    return CellDetail(
+        speed=speed,
+        growth_rate=math.log(radius) / system.period,
+        multipliers=values,
+        critical=complex(values[0]),
+        motion=motion,
+        tongue=tongue,
+        label=label,
+        searched=searched,
+        deflection=deflection,
+        history=history,
+    )
+
+
+def _tongue_at(model: Model, speed: float) -> tuple[Tongue | None, tuple[float, float]]:
+    """Tongue around an unstable speed, looked for further away until both its borders are found."""
+    tongue, window = None, (speed, speed)
+    for factor in _WINDOWS:
+        window = (speed / factor, speed * factor)
+        try:
+            found = tongues(model, *window, threshold=UNSTABLE, hints=(speed,))
+        except ArithmeticError:
+            # Multipliers too large to be known to the threshold: no borders, but the cell still has its label.
+            return None, window
+        tongue = next((t for t in found if t.lower <= speed <= t.upper), None)
+        if tongue is None or (window[0] < tongue.lower and tongue.upper < window[1]):
+            break
+    return tongue, window
+
+
+def _deflection(model: Transverse, motion: ComplexArray) -> tuple[xr.DataArray, ComplexArray]:
+    """Deflection of the disk in a motion, and the motion to its scale and phase."""
+    body = model.body
+    radius = np.linspace(body.bore_radius, body.outer_radius, _RADII)
+    angle = np.linspace(0.0, 2.0 * np.pi, _ANGLES)
+    shape = shape_vector(body, radius[:, np.newaxis], angle)
+    values = shape @ motion
+    largest = values.flat[np.abs(values).argmax()]
+    data = xr.DataArray(
+        values / largest,
+        dims=("radius", "angle"),
+        coords={
+            "radius": ("radius", radius, {"units": "m"}),
+            "angle": ("angle", angle, {"units": "rad"}),
+        },
+        name="deflection",
+        attrs={"units": "1", "long_name": "deflection over its largest amplitude"},
+    )
+    return data, motion / largest
+
+
+def _history(system: PeriodicSystem, state: ComplexArray, critical: complex) -> xr.DataArray:
+    """Displacements of the critical motion over some periods: integrated over one, λ times that in the next."""
+    kicks = dict(system.velocity_kicks())
+    edges = np.append(system.breakpoints, 1.0)
+    instants, motion = [], []
+    for start, end in itertools.pairwise(edges):
+        if start in kicks:
+            state = state + np.concatenate([np.zeros(system.size), kicks[start] @ state[: system.size]])
+        # The derivative at the end of a piece is that from the left, wherever the integrator asks for it.
+        piece = solve_ivp(
+            lambda x, y, end=end: system.period * system.state_matrix(x, "left" if x >= end else "right") @ y,
+            (start, end),
+            state,
+            t_eval=np.linspace(start, end, max(2, math.ceil(_INSTANTS * (end - start)) + 1)),
+            method="DOP853",
+            rtol=1e-8,
+            atol=1e-10,
+        )
+        instants.append(piece.t)
+        motion.append(piece.y[: system.size].T)
+        state = piece.y[:, -1]
+    once, time = np.concatenate(motion), np.concatenate(instants)
+    periods = np.arange(_PERIODS)
+    whole = (critical ** periods[:, np.newaxis, np.newaxis] * once).reshape(-1, system.size).real
+    return xr.DataArray(
+        whole / np.abs(whole).max(),
+        dims=("time", "coordinate"),
+        coords={"time": ("time", (periods[:, np.newaxis] + time).ravel(), {"units": "periods"})},
+        name="history",
+        attrs={"units": "1", "long_name": "displacement over the largest one"},
+    )

@@ -1,0 +1,399 @@
+"""One YAML file that says everything about a drive: read, checked, turned into models.
+
+People write these files, so every mistake ends in one sentence: which key, by its dotted path, what it holds, what
+would be valid. What the keys are stands in :mod:`facegear.drives.drive_keys`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from facegear.design.body import Requirements
+from facegear.drives.drive_keys import LONGEST_TEXT, MOST_PINIONS, NAME, SECTIONS, WIDEST_SPEED_RATIO, Key
+from facegear.geometry.drive import Drive
+from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
+from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
+from facegear.mechanics.torsional import Gearbox, Torsional
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import Material, MeshLoad, integer_at_least, rpm, within
+from facegear.support.plain_yaml import read_plain_yaml
+
+T = TypeVar("T")
+
+# Factors by which people miss a unit, after that to SI.
+_FACTORS = (1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9)
+
+_INCH = 25.4e-3
+# Smallest angle between two pinions [rad].
+_CLOSEST = 1e-5
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*", re.ASCII)
+_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+([eE][-+]?\d+)?)\s*[^\d\s.,:eE-].*", re.ASCII)
+
+
+class DriveFileError(ValueError):
+    """A drive file cannot be used; the message names the key, its value and what would be valid."""
+
+
+@dataclass(frozen=True)
+class DriveFile:
+    """What a drive file says, in SI units.
+
+    Attributes
+    ----------
+    name : str
+        Name of the drive.
+    transverse : Transverse
+        Drive, body, mesh load and pinions.
+    requirements : Requirements
+        Power [W], pinion speed [rad/s], safety factor, operating speeds of the face gear [rad/s].
+    torsional : Torsional or None
+        Shafts and inertias, if the file has a gearbox.
+    """
+
+    name: str
+    transverse: Transverse
+    requirements: Requirements
+    torsional: Torsional | None = None
+
+    @property
+    def drive(self) -> Drive:
+        """Teeth."""
+        return self.transverse.body.drive
+
+
+def read_drive_file(path: str | Path) -> DriveFile:
+    """Read and check a drive file.
+
+    Parameters
+    ----------
+    path : str or Path
+        YAML file; a relative path starts at the current folder.
+
+    Returns
+    -------
+    DriveFile
+
+    Raises
+    ------
+    DriveFileError
+        If the file cannot be read, or as :func:`parse_drive`.
+    """
+    if not isinstance(path, str | Path) or not str(path).strip():
+        raise DriveFileError(f"drive_file must be the path of a YAML file, got {path!r}")
+    try:
+        content = Path(path).read_bytes()
+    except (OSError, ValueError) as error:
+        told = (isinstance(error, OSError) and error.strerror) or str(error)
+        raise DriveFileError(
+            f"drive_file {str(path)!r} cannot be read: {told} (the current folder is {Path.cwd()})"
+        ) from None
+    return parse_drive(content, Path(path).name)
+
+
+def parse_drive(content: bytes | str, source: str = "drive file") -> DriveFile:
+    """Check the content of a drive file and build what it describes.
+
+    Parameters
+    ----------
+    content : bytes or str
+        YAML text.
+    source : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    DriveFile
+
+    Raises
+    ------
+    DriveFileError
+        If the text is not plain YAML, a key is unknown, missing or given twice, or a value is of the wrong type, out
+        of its range, or impossible together with others.
+    """
+    try:
+        found = _checked(read_plain_yaml(content))
+        try:
+            return _built(found)
+        except ValueError as error:
+            raise ValueError(f"{error}{_guess(found)}") from None
+    except (TypeError, ValueError) as error:
+        raise DriveFileError(f"{source}: {error}") from None
+
+
+# --- from text to numbers in SI ---------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What a file holds, checked key by key.
+
+    Attributes
+    ----------
+    name : str
+        Name of the drive.
+    values : dict
+        Values in SI, by section and SI name of the key; None for a gearbox that is not there.
+    keys : dict
+        The keys that gave them, by section and SI name.
+    """
+
+    name: str
+    values: dict[str, Any]
+    keys: dict[str, dict[str, Key]]
+
+    def key(self, section: str, quantity: str) -> str:
+        """Dotted path of the key that gave a value."""
+        return f"{section}.{self.keys[section][quantity].name}"
+
+    def shown(self, section: str, quantity: str) -> str:
+        """Value of a quantity as the file has it, with its unit."""
+        key = self.keys[section][quantity]
+        return f"{key.from_si(self.values[section][quantity]):.6g} {key.unit}".rstrip()
+
+    def replaced(self, section: str, **values: Any) -> _Found:
+        """Return a copy with other values in one section."""
+        return replace(self, values={**self.values, section: {**self.values[section], **values}})
+
+
+def _checked(content: Any) -> _Found:
+    """Check every key by itself."""
+    _check_keys("", content, [NAME.name, *SECTIONS])
+    values: dict[str, Any] = {}
+    chosen: dict[str, dict[str, Key]] = {}
+    for name, section in SECTIONS.items():
+        keys = [key.name for key in section.keys]
+        if name not in content:
+            if section.required:
+                raise ValueError(f"{name} is missing: a section with the keys {', '.join(keys)}")
+            if any(key.default is None for key in section.keys):
+                values[name] = None
+                continue
+        entries = content.get(name, {})
+        _check_keys(name, entries, keys)
+        chosen[name] = {same[0].si_name: _chosen(name, same, entries) for same in section.quantities()}
+        values[name] = {
+            # A key without a value is a mistake, not the default.
+            quantity: _value(f"{name}.{key.name}", key, entries.get(key.name, key.default))
+            for quantity, key in chosen[name].items()
+        }
+    return _Found(_value(NAME.name, NAME, content.get(NAME.name)), values, chosen)
+
+
+def _chosen(section: str, same: tuple[Key, ...], entries: Mapping[str, Any]) -> Key:
+    """Find the one key that a file uses of those that say the same."""
+    names = " or ".join(f"{section}.{key.name}" for key in same)
+    given = [key for key in same if key.name in entries]
+    if len(given) > 1:
+        raise ValueError(f"{names.replace(' or ', ' and ')} say the same: give one of them")
+    if not given and len(same) > 1:
+        raise ValueError(f"{names} is missing: {_plain(same[0].meaning)}; valid is {same[0].valid}")
+    return given[0] if given else same[0]
+
+
+def _check_keys(path: str, entries: Any, valid: Sequence[str]) -> None:
+    """Refuse what is no section, and unknown keys."""
+    if not isinstance(entries, Mapping):
+        raise TypeError(
+            f"{path or 'a drive file'} must be a section with the keys {', '.join(valid)}, got {_shown(entries)}"
+        )
+    prefix = f"{path}." if path else ""
+    for key in entries:
+        if key in valid:
+            continue
+        homes = [name for name, section in SECTIONS.items() if key in {k.name for k in section.keys}]
+        near = difflib.get_close_matches(key, valid, 1, 0.5)
+        if homes:
+            told = f"it belongs to {' or '.join(homes)}"
+        elif near:
+            told = f"did you mean {prefix}{near[0]}?"
+        else:
+            told = f"valid are {', '.join(valid)}"
+        name = _cut(key if key.isidentifier() else repr(key))
+        raise ValueError(f"{prefix}{name} = {_shown(entries[key])} is no key of a drive file: {told}")
+
+
+def _value(path: str, key: Key, value: Any) -> Any:
+    """Value of a key in SI."""
+    if value is None:
+        raise ValueError(f"{path} is missing: {_plain(key.meaning)}; valid is {key.valid}")
+    if key.kind == "text":
+        if not isinstance(value, str) or not value.strip() or len(value) > LONGEST_TEXT:
+            raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
+        return value.strip()
+    if key.kind == "choice":
+        if not isinstance(value, str) or value not in key.choices:
+            raise ValueError(f"{path} must be {key.valid}, got {_shown(value)}")
+        return value
+    if key.kind == "numbers":
+        if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_PINIONS:
+            raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
+        return tuple(key.to_si(_number(f"{path}[{i}]", key, entry)) for i, entry in enumerate(value))
+    if key.kind == "integer":
+        return int(within(path, integer_at_least(path, value, int(key.lowest)), key.lowest, key.highest))
+    return key.to_si(_number(path, key, value))
+
+
+def _number(path: str, key: Key, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
+    if key.or_zero and value == 0:
+        return 0.0
+    return within(path, value, key.lowest, key.highest, key.unit, _unit_hint(path, key, value))
+
+
+def _text_hint(value: Any) -> str:
+    """Guess at what made a text of a number."""
+    if not isinstance(value, str):
+        return ""
+    if _DECIMAL_COMMA.fullmatch(value):
+        return f" (a point, not a comma: {value.strip().replace(',', '.')})"
+    if match := _WITH_UNIT.fullmatch(value):
+        return f" (the number alone, its unit is that of the key: {match[1]})"
+    return ""
+
+
+def _unit_hint(path: str, key: Key, value: float) -> str:
+    """Guess at a wrong unit: the value that would be valid."""
+    hints = [f"a ratio, not {key.no_unit}?"] if key.no_unit and value > key.highest else []
+    factors = (key.to_si(1.0) ** -1, *_FACTORS) if key.unit else (1e-3,) if key.no_unit else ()
+    for factor in factors:
+        if factor != 1.0 and key.lowest <= value * factor <= key.highest:
+            unit = f", in {key.unit}" if key.unit else ""
+            hints.append(f"wrong unit? {path}: {value * factor:.6g} would be valid{unit}")
+            break
+    if key.or_zero and not hints:
+        hints.append("0 is valid, too")
+    return "; ".join(hints)
+
+
+def _shown(value: Any) -> str:
+    return _cut(repr(value))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 1] + "…"
+
+
+def _plain(meaning: str) -> str:
+    """Documentation without its mathematics marks."""
+    return re.sub(r"[$\\]", "", meaning)
+
+
+# --- from numbers to models ---------------------------------------------------------------------------------------
+
+
+def _built(found: _Found) -> DriveFile:
+    values = found.values
+    drive = _by_model(found, "gears", lambda: Drive(**values["gears"]))
+    material = _by_model(found, "material", lambda: Material(**values["material"]))
+    _check_bore(drive, values["body"]["bore_radius"])
+    _check_angles(values["pinions"]["angles"])
+    body = _by_model(found, "body", lambda: Body(drive, material=material, **values["body"]))
+    pinions = dict(values["pinions"])
+    angles, clock = pinions.pop("angles"), pinions.pop("contact_ratio")
+    ratio = drive.geometric_contact_ratio if clock == "geometric" else None
+    load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
+    transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact_ratio=ratio))
+    requirements = _requirements(found, body)
+    torsional = None
+    if (gearbox := values["gearbox"]) is not None:
+        torsional = _by_model(found, "gearbox", lambda: _torsional(drive, gearbox, ratio))
+    return DriveFile(found.name, transverse, requirements, torsional)
+
+
+def _torsional(drive: Drive, gearbox: dict[str, Any], contact_ratio: float | None) -> Torsional:
+    values = dict(gearbox)
+    arm = values.pop("arm")
+    for part in ("mesh", "input", "output"):
+        # The file gives damping as a time.
+        values[f"{part}_damping"] *= values[f"{part}_stiffness"]
+    return Torsional(Gearbox(drive, contact_ratio=contact_ratio, **values), arm=arm)
+
+
+def _check_bore(drive: Drive, bore_radius: float) -> None:
+    """Check the bore in the file's unit, before the body does so in its own."""
+    lowest = BORE_RATIO_RANGE[0] * drive.outer_radius
+    highest = min(BORE_RATIO_RANGE[1] * drive.outer_radius, drive.inner_radius)
+    if not lowest <= bore_radius < highest:
+        raise ValueError(
+            f"body.bore_radius_mm must lie between {1e3 * lowest:.6g} and {1e3 * highest:.6g} mm for these gears, "
+            f"whose teeth reach from {1e3 * drive.inner_radius:.6g} to {1e3 * drive.outer_radius:.6g} mm, "
+            f"got {1e3 * bore_radius:.6g} mm"
+        )
+
+
+def _check_angles(angles: Sequence[float]) -> None:
+    """Check that no two pinions sit in the same place, in the file's unit."""
+    for i, angle in enumerate(angles):
+        for j in range(i):
+            if abs(math.remainder(angle - angles[j], 2 * math.pi)) < _CLOSEST:
+                raise ValueError(
+                    f"pinions.angles_deg[{i}] must differ from the other angles by more than full turns, got "
+                    f"{math.degrees(angle):.6g}° beside {math.degrees(angles[j]):.6g}°"
+                )
+
+
+def _requirements(found: _Found, body: Body) -> Requirements:
+    operation = found.values["operation"]
+    low, high, limit = operation["lowest_speed"], operation["highest_speed"], fastest_speed(body)
+    if not high / WIDEST_SPEED_RATIO <= low * (1 + 1e-12) or not low < high:
+        raise ValueError(
+            f"operation.lowest_speed_rpm must be lower than operation.highest_speed_rpm = {rpm(high):.6g} rpm and at "
+            f"least 1/{WIDEST_SPEED_RATIO:g} of it, got {rpm(low):.6g} rpm"
+        )
+    if high > limit:
+        raise ValueError(
+            f"operation.highest_speed_rpm must be at most {rpm(limit):.6g} rpm for this body, whose rim then moves "
+            f"{FASTEST_SPIN:g} times as fast as sound in its material, got {rpm(high):.6g} rpm"
+        )
+    duty = (operation["power"], operation["pinion_speed"], operation["safety_factor"])
+    return _by_model(found, "operation", lambda: Requirements(*duty, (low, high)))
+
+
+def _by_model(found: _Found, section: str, build: Callable[[], T]) -> T:
+    """Build a part; what it refuses is told under the names of the file."""
+    try:
+        return build()
+    except (TypeError, ValueError, ArithmeticError) as error:
+        text = str(error)
+        for quantity in found.keys.get(section, {}):
+            text = re.sub(rf"(?<![\w.]){quantity}(?!\w)", found.key(section, quantity), text)
+        raise ValueError(text if f"{section}." in text else f"{section}: {text}") from error
+
+
+# --- what may have happened ---------------------------------------------------------------------------------------
+
+
+def _guess(found: _Found) -> str:
+    """Say which frequent mistake turns values that do not go together into ones that do; empty if none does."""
+    gears, operation = found.values["gears"], found.values["operation"]
+    teeth = {"pinion_teeth": gears["gear_teeth"], "gear_teeth": gears["pinion_teeth"]}
+    speeds = {"lowest_speed": operation["highest_speed"], "highest_speed": operation["lowest_speed"]}
+    # What is 8 mm as a module is 25.4 mm/8 as a pitch, and the same the other way round.
+    module = 1e-3 * _INCH / gears["module"]
+    other = (
+        "a diametral pitch per inch"
+        if found.key("gears", "module") == "gears.module_mm"
+        else "a module in mm"
+    )
+    guesses = (
+        ("gears.pinion_teeth and gears.gear_teeth swapped?", found.replaced("gears", **teeth)),
+        (
+            "operation.lowest_speed_rpm and operation.highest_speed_rpm swapped?",
+            found.replaced("operation", **speeds),
+        ),
+        (f"is {found.shown('gears', 'module')} {other}?", found.replaced("gears", module=module)),
+    )
+    for words, changed in guesses:
+        try:
+            _built(changed)
+        except ValueError:
+            continue
+        return f" ({words})"
+    return ""

@@ -1,0 +1,400 @@
+"""Keys of a drive file: one table, from which the check, the JSON Schema and the documentation are made.
+
+Units are those of a workshop and part of each key's name; inside the package everything is SI.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Literal
+
+from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
+from facegear.support.parameters import STEEL, WATT_PER_HORSEPOWER
+
+Kind = Literal["integer", "number", "text", "choice", "numbers"]
+
+# Tongues crowd towards standstill: their number, and the time to find them, goes with highest over lowest speed.
+WIDEST_SPEED_RATIO = 50.0
+LONGEST_TEXT = 80
+MOST_PINIONS = 12
+# Value in SI is value in the file divided by this.
+PER_SI: Mapping[str, float] = MappingProxyType(
+    {
+        "mm": 1e3,
+        "°": 180 / math.pi,
+        "µs": 1e6,
+        "rpm": 30 / math.pi,
+        "kW": 1e-3,
+        "hp": 1 / WATT_PER_HORSEPOWER,
+        "GPa": 1e-9,
+        "MPa": 1e-6,
+    }
+)
+# Value in SI is this divided by the value in the file.
+OVER_SI: Mapping[str, float] = MappingProxyType({"1/in": 25.4e-3})
+_UNIT_IN_NAME = re.compile(r"_(mm|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a drive file.
+
+    Attributes
+    ----------
+    name : str
+        Name in the file, with its unit.
+    meaning : str
+        What it is, for the documentation.
+    kind : {"number", "integer", "text", "choice", "numbers"}
+        "numbers" is a list of numbers.
+    unit : str
+        Unit of the value in the file.
+    lowest, highest : float
+        Ends of the valid interval, both allowed.
+    or_zero : bool
+        Whether 0 is valid although it lies outside the interval.
+    default : object
+        Value if the key is left out; None for a key that must be there.
+    choices : tuple of str
+        Valid words of a "choice".
+    quantity : str
+        Name of the package's own parameter, where it is not that of the key without its unit. Keys of a section with
+        the same quantity say the same in different units: a file has exactly one of them.
+    no_unit : str
+        What a ratio without a unit is mistaken for.
+    """
+
+    name: str
+    meaning: str
+    kind: Kind = "number"
+    unit: str = ""
+    lowest: float = -math.inf
+    highest: float = math.inf
+    or_zero: bool = False
+    default: Any = None
+    choices: tuple[str, ...] = ()
+    quantity: str = ""
+    no_unit: str = ""
+
+    @property
+    def si_name(self) -> str:
+        """Name of the package's own parameter."""
+        return self.quantity or _UNIT_IN_NAME.sub("", self.name)
+
+    def to_si(self, value: float) -> float:
+        """Value in SI of a value in the file."""
+        return OVER_SI[self.unit] / value if self.unit in OVER_SI else value / PER_SI.get(self.unit, 1.0)
+
+    def from_si(self, value: float) -> float:
+        """Value in the file of a value in SI."""
+        return OVER_SI[self.unit] / value if self.unit in OVER_SI else value * PER_SI.get(self.unit, 1.0)
+
+    @property
+    def valid(self) -> str:
+        """What is valid, in words."""
+        if self.kind == "choice":
+            return " or ".join(self.choices)
+        if self.kind == "text":
+            return f"text of 1 to {LONGEST_TEXT} characters"
+        interval = f"{self.lowest:g} to {self.highest:g}{f' {self.unit}' if self.unit else ''}"
+        what = {"integer": "a whole number", "numbers": f"a list of 1 to {MOST_PINIONS} numbers, each"}
+        return f"{'0, or ' if self.or_zero else ''}{what.get(self.kind, 'a number')} from {interval}"
+
+
+@dataclass(frozen=True)
+class Section:
+    """A group of keys.
+
+    Attributes
+    ----------
+    meaning : str
+        What it describes.
+    keys : tuple of Key
+    required : bool
+        Whether a file must have it.
+    """
+
+    meaning: str
+    keys: tuple[Key, ...]
+    required: bool = True
+
+    def quantities(self) -> Iterator[tuple[Key, ...]]:
+        """Keys that say the same in different units, together; most stand alone."""
+        for name in dict.fromkeys(key.si_name for key in self.keys):
+            yield tuple(key for key in self.keys if key.si_name == name)
+
+
+def _count(name: str, meaning: str, lowest: int, highest: int, default: int | None = None) -> Key:
+    return Key(name, meaning, "integer", "", lowest, highest, default=default)
+
+
+def _time(name: str, meaning: str, default: float | None = None) -> Key:
+    """Damping as a time [µs]; a nonzero value so small that it must be in seconds is refused."""
+    return Key(name, meaning, "number", "µs", 1e-3, 1e4, or_zero=True, default=default)
+
+
+def _ratio(name: str, meaning: str, no_unit: str) -> Key:
+    return Key(name, meaning, "number", "", 1e-6, 1e3, or_zero=True, no_unit=no_unit)
+
+
+NAME = Key("name", "name of the drive, for titles: any characters, not all of them blank", "text")
+
+_GEARS = Section(
+    "Teeth of the pinion, which is also the shaper's shape, and of the face gear.",
+    (
+        _count("pinion_teeth", "$N_1$, teeth of the pinion", 10, 300),
+        _count("gear_teeth", "$N_2$, teeth of the face gear, more than the pinion's", 11, 3000),
+        Key("module_mm", "$m_d$, module; not a diametral pitch", "number", "mm", 0.1, 100.0),
+        Key(
+            "diametral_pitch_per_inch",
+            "$P_d = 1/m_d$, teeth per inch of diameter; 8 is a module of 3.175 mm",
+            "number",
+            "1/in",
+            0.3,
+            200.0,
+            quantity="module",
+        ),
+        Key("pressure_angle_deg", "$\\alpha_c$, pressure angle", "number", "°", 14.5, 30.0, default=25.0),
+        Key("shaft_angle_deg", "$\\gamma$, angle between the axes", "number", "°", 60.0, 120.0, default=90.0),
+    ),
+)
+_BODY = Section(
+    "Body of the face gear: a disk clamped at the bore, as large as the teeth reach.",
+    (
+        Key(
+            "thickness_ratio",
+            "$h/a$, thickness over outer radius",
+            "number",
+            "",
+            *THICKNESS_RATIO_RANGE,
+            no_unit="mm",
+        ),
+        Key(
+            "bore_radius_mm",
+            "$b$, bore radius; also 0.05 to 0.9 of the outer radius, and inside the teeth",
+            "number",
+            "mm",
+            0.1,
+            5000.0,
+        ),
+        _count("nodal_circles", "$M$, nodal circles of the modes", 0, MAX_NODAL_CIRCLES, 1),
+        _count("nodal_diameters", "$N$, nodal diameters of the modes", 0, MAX_NODAL_DIAMETERS, 3),
+    ),
+)
+_MATERIAL = Section(
+    "Material of the body; the steel of table 4.3 if left out.",
+    (
+        Key("density_kg_per_m3", "$\\rho$, density", "number", "kg/m³", 100.0, 30e3, default=STEEL.density),
+        Key(
+            "youngs_modulus_GPa",
+            "$E$, Young's modulus",
+            "number",
+            "GPa",
+            0.1,
+            2000.0,
+            default=STEEL.youngs_modulus * PER_SI["GPa"],
+        ),
+        Key(
+            "poissons_ratio", "$\\nu$, Poisson's ratio", "number", "", 0.0, 0.5, default=STEEL.poissons_ratio
+        ),
+        _time(
+            "viscous_loss_factor_us", "$\\xi$, viscous loss factor", STEEL.viscous_loss_factor * PER_SI["µs"]
+        ),
+        Key(
+            "yield_strength_MPa",
+            "$\\sigma_Y$, yield strength",
+            "number",
+            "MPa",
+            1.0,
+            1e4,
+            default=STEEL.yield_strength * PER_SI["MPa"],
+        ),
+    ),
+    required=False,
+)
+_PINIONS = Section(
+    "Pinions and their bearings, all alike, as the body feels them.",
+    (
+        _ratio("stiffness", "$\\mu$, bearing stiffness over that of the disk (4-17)", "N/m"),
+        _time("damping_us", "$\\zeta$, bearing damping over bearing stiffness (4-18)"),
+        _ratio("mass", "$\\tau$, pinion mass over that of a solid cylinder (4-19)", "kg"),
+        Key(
+            "angles_deg",
+            "$\\theta_c$ of each pinion, all different",
+            "numbers",
+            "°",
+            -360.0,
+            360.0,
+            default=(0.0,),
+        ),
+        Key(
+            "contact_ratio",
+            "time a tooth pair stays in mesh: Tregold's, as printed, or that of the true sweep",
+            "choice",
+            default="tregold",
+            choices=("tregold", "geometric"),
+        ),
+    ),
+)
+_OPERATION = Section(
+    "What the drive has to do.",
+    (
+        Key(
+            "lowest_speed_rpm",
+            f"lowest speed of the face gear, at least 1/{WIDEST_SPEED_RATIO:g} of the highest",
+            "number",
+            "rpm",
+            1.0,
+            1e5,
+        ),
+        Key(
+            "highest_speed_rpm",
+            "highest speed of the face gear; its rim at most 0.2 times as fast as sound in its material",
+            "number",
+            "rpm",
+            1.0,
+            1e5,
+        ),
+        Key("power_kW", "power of one pinion", "number", "kW", 1e-2, 1e5),
+        Key("power_hp", "power of one pinion (745.69987 W)", "number", "hp", 1e-2, 1e5),
+        Key("pinion_speed_rpm", "speed of the pinion at that power", "number", "rpm", 1.0, 1e6),
+        Key("safety_factor", "safety factor against yielding (4-22)", "number", "", 1.0, 100.0, default=1.5),
+    ),
+)
+
+
+def _inertia(name: str, meaning: str) -> Key:
+    return Key(name, meaning, "number", "kg m²", 1e-9, 1e9)
+
+
+def _shaft(name: str, meaning: str) -> Key:
+    return Key(name, meaning, "number", "N m/rad", 1e-3, 1e12)
+
+
+_GEARBOX = Section(
+    "Shafts and inertias for torsional vibration; without it the report leaves torsion out.",
+    (
+        _inertia("pinion_inertia_kg_m2", "$J_1$, pinion with what turns with it"),
+        _inertia("gear_inertia_kg_m2", "$J_2$, face gear"),
+        _inertia("load_inertia_kg_m2", "$J_o$, load"),
+        Key("mesh_stiffness_N_per_m", "$k_m$, stiffness of a tooth pair (7-2)", "number", "N/m", 1e3, 1e12),
+        _time("mesh_damping_us", "$c_m/k_m$, mesh damping over mesh stiffness"),
+        _shaft("input_stiffness_Nm_per_rad", "$k_1$, stiffness of the input shaft"),
+        _time("input_damping_us", "$c_1/k_1$, its damping over its stiffness"),
+        _shaft("output_stiffness_Nm_per_rad", "$k_2$, stiffness of the output shaft"),
+        _time("output_damping_us", "$c_2/k_2$, its damping over its stiffness"),
+        Key(
+            "arm",
+            "moment arm of the mesh force: as printed (7-3), or the constant one of conjugate teeth",
+            "choice",
+            default="printed",
+            choices=("printed", "conjugate"),
+        ),
+    ),
+    required=False,
+)
+
+SECTIONS: Mapping[str, Section] = MappingProxyType(
+    {
+        "gears": _GEARS,
+        "body": _BODY,
+        "material": _MATERIAL,
+        "pinions": _PINIONS,
+        "operation": _OPERATION,
+        "gearbox": _GEARBOX,
+    }
+)
+"""Keys of a drive file, section by section."""
+
+
+def schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of a drive file, for editors and validators.
+
+    It says what can be said key by key. Whether teeth, bore and speeds fit one another only
+    :func:`facegear.drives.drive_file.parse_drive` can tell.
+    """
+    sections = {name: _section_schema(section) for name, section in SECTIONS.items()}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Drive file of facegear",
+        **_object(
+            {NAME.name: _key_schema(NAME), **sections},
+            [NAME.name, *(name for name, section in SECTIONS.items() if section.required)],
+        ),
+    }
+
+
+def _object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "additionalProperties": False,
+        "required": required,
+        "properties": properties,
+    }
+
+
+def _section_schema(section: Section) -> dict[str, Any]:
+    properties = {key.name: _key_schema(key) for key in section.keys}
+    required = [key.name for key, *others in section.quantities() if key.default is None and not others]
+    exactly_one = [
+        {"oneOf": [{"required": [key.name]} for key in keys]}
+        for keys in section.quantities()
+        if len(keys) > 1
+    ]
+    choices = {"allOf": exactly_one} if exactly_one else {}
+    return {"description": section.meaning, **_object(properties, required), **choices}
+
+
+def _key_schema(key: Key) -> dict[str, Any]:
+    unit = f" [{key.unit}]" if key.unit else ""
+    told: dict[str, Any] = {"description": f"{key.meaning.replace('$', '')}{unit}"}
+    if key.default is not None:
+        told["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
+    if key.kind == "text":
+        return told | {"type": "string", "maxLength": LONGEST_TEXT, "pattern": r"\S"}
+    if key.kind == "choice":
+        return told | {"enum": list(key.choices)}
+    ends = {"minimum": key.lowest, "maximum": key.highest}
+    if key.kind == "numbers":
+        return told | {
+            "type": "array",
+            "minItems": 1,
+            "maxItems": MOST_PINIONS,
+            "items": {"type": "number", **ends},
+        }
+    if key.or_zero:
+        return told | {"type": "number", "anyOf": [{"const": 0}, ends]}
+    return told | {"type": key.kind, **ends}
+
+
+def documentation() -> str:
+    """Tables of all keys, in Markdown."""
+    head = "| key | meaning | unit | valid | if left out |\n| --- | --- | --- | --- | --- |"
+    parts = [f"{head}\n{_row(NAME, [])}"]
+    for name, section in SECTIONS.items():
+        optional = "" if section.required else " (may be left out)"
+        rows = "\n".join(
+            _row(key, [f"`{other.name}`" for other in keys if other is not key])
+            for keys in section.quantities()
+            for key in keys
+        )
+        parts.append(f"### `{name}`{optional}\n\n{section.meaning}\n\n{head}\n{rows}")
+    return "\n\n".join(parts)
+
+
+def _row(key: Key, others: list[str]) -> str:
+    default = "required" if key.default is None else _shown_default(key.default)
+    if others:
+        default = f"this or {' or '.join(others)}"
+    valid = key.valid.replace(f" {key.unit}", "") if key.unit else key.valid
+    return f"| `{key.name}` | {key.meaning} | {key.unit or '1' if key.kind != 'text' else ''} | {valid} | {default} |"
+
+
+def _shown_default(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(f'{entry:g}' for entry in value)}]"
+    return value if isinstance(value, str) else f"{value:g}"

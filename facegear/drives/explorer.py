@@ -1,0 +1,370 @@
+"""The live explorer: controls, a map that can be clicked, one cell of it in detail; and the same as a picture."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import io
+import time
+from collections.abc import Iterator
+from decimal import Decimal
+from html import escape
+from typing import Any
+
+import ipywidgets
+import numpy as np
+import plotly.graph_objects as go
+import xarray as xr
+from matplotlib.colors import Normalize, to_hex
+from matplotlib.figure import Figure
+
+from facegear.drives.cell import cell_detail
+from facegear.drives.cell_figure import RING, cell_figure, described, draw_detail
+from facegear.drives.explore import Choice, Control, Quantity, Study, View, map_stages, reading_map, unstable
+from facegear.floquet.models import Model, replace_parameter
+from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, WIDTH, styled
+from facegear.support.parameters import FloatArray
+
+_REFUSALS = (TypeError, ValueError, ArithmeticError)
+_COLOURS = [[k / 10, to_hex(GROWTH(k / 10))] for k in range(11)]
+
+
+@styled
+def picture(view: View) -> Figure:
+    """Draw the explorer as it looks after a click, for readers without a kernel.
+
+    Parameters
+    ----------
+    view : View
+        From :func:`facegear.drives.explore.view`.
+    """
+    figure = Figure(figsize=(WIDTH, 7.0), layout="constrained")
+    parts: Any = figure.subfigures(2, 1, height_ratios=(1.25, 1.0))
+    above, below = parts
+    ax = above.subplots()
+    speed, vertical = view.study.speed, view.vertical
+    growth = np.ma.masked_array(view.chart.values, ~unstable(view.chart))
+    mesh = ax.pcolormesh(
+        view.chart["speed"] / speed.unit,
+        view.chart[view.chart.dims[0]] / vertical.unit,
+        growth,
+        cmap=GROWTH,
+        norm=Normalize(0.0, max(float(growth.max(fill_value=0.0) or 0.0), 1e-9)),
+        shading="nearest",
+        rasterized=True,
+    )
+    ax.plot(view.detail.speed / speed.unit, view.value / vertical.unit, "o", **RING)
+    ax.set(xlabel=speed.label, ylabel=vertical.label)
+    ax.grid(False)
+    figure.colorbar(mesh, ax=ax, label="growth rate [1/s]")
+    draw_detail(below, view.detail, view.study.coordinates)
+    return figure
+
+
+class MapExplorer:
+    """Controls, a stability map and the detail of a cell, alive in JupyterLab and Voilà.
+
+    A control that changes draws the map anew, coarse at first; a click on the map, or the two sliders below it,
+    show multipliers, critical motion and tongue of a cell. What the study refuses is said beside the controls.
+
+    Parameters
+    ----------
+    study : Study
+        What is explored.
+
+    Attributes
+    ----------
+    controls : dict of str to ipywidgets.Widget
+        By name, "highest_speed" and the like among them.
+    vertical : ipywidgets.Dropdown
+        What is on the vertical axis.
+    column, row : ipywidgets.IntSlider
+        The cell that is shown in detail.
+    figure : plotly.graph_objects.FigureWidget
+        The map, and the mark of the cell.
+    message, status, report : ipywidgets.HTML
+        What was refused; how far the map is; the cell in words.
+    picture : ipywidgets.HTML
+        The cell drawn.
+    widget : ipywidgets.Widget
+        All of it.
+    """
+
+    def __init__(self, study: Study) -> None:
+        self.study = study
+        self.controls = {control.name: _control(control) for control in (*study.controls, study.speed)}
+        self.controls[study.speed.name].description = f"highest {study.speed.label}"
+        self.vertical = ipywidgets.Dropdown(
+            options=[(quantity.label, quantity.name) for quantity in study.sweepable],
+            value=study.vertical,
+            description="vertical axis",
+            **_look(),
+        )
+        self.column, self.row = ipywidgets.IntSlider(**_look()), ipywidgets.IntSlider(**_look())
+        for slider in (self.column, self.row):
+            slider.readout, slider.continuous_update = False, False
+        self.message, self.status, self.report, self.picture = (ipywidgets.HTML() for _ in range(4))
+        # Plotly's widget loses what is changed before a page shows it (Voilà shows it last): complete from the start.
+        self._turn = 0
+        self._quantity = study.swept(study.vertical)
+        self._model, axes = self._begun(self._quantity)
+        self._chart = reading_map(self._model, *axes)
+        self.figure = _map_figure(self._chart, self._quantity, study.speed)
+        self.figure.data[0].on_click(self.click)
+        rows, columns = self._chart.shape
+        self.column.max, self.row.max = columns - 1, rows - 1
+        self.column.value, self.row.value = columns // 2, rows // 2
+        self.status.value = _small(f"{columns} × {rows} cells")
+        self.widget = self._laid_out()
+        self._show_cell()
+        for control in (*self.controls.values(), self.vertical):
+            control.observe(lambda _: self.refresh(), "value")
+        for slider in (self.column, self.row):
+            slider.observe(self._moved, "value")
+
+    def _repr_mimebundle_(self, **options: Any) -> Any:
+        return self.widget._repr_mimebundle_(**options)
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What the controls say, as shown."""
+        return {name: control.value for name, control in self.controls.items()}
+
+    def refresh(self) -> None:
+        """Compute the map for what the controls say, or say why there is none."""
+        quantity = self.study.swept(self.vertical.value)
+        try:
+            model, axes = self._begun(quantity)
+            stages = map_stages(model, *axes)
+            first = next(stages)
+        except _REFUSALS as problem:
+            self._refuse(problem)
+            return
+        self.message.value = ""
+        self._turn += 1
+        self._model, self._quantity = model, quantity
+        self._draw(first)
+        _in_pieces(self._refine(stages, self._turn))
+
+    def _begun(self, quantity: Quantity) -> tuple[Model, tuple[FloatArray, str, FloatArray]]:
+        """Model and axes of what the controls say; controls that do not matter are switched off."""
+        settings = self.settings
+        for control in self.study.controls:
+            if isinstance(control, Quantity):
+                self.controls[control.name].disabled = control is quantity or not control.matters(settings)
+        model = self.study.model(settings)
+        speeds, values = self.study.axes(settings, quantity.name)
+        assert quantity.parameter is not None
+        return model, (speeds, quantity.parameter, values)
+
+    def click(self, _trace: Any, points: Any, _state: Any) -> None:
+        """Show the cell that was clicked; the signature is Plotly's.
+
+        Parameters
+        ----------
+        points : plotly.callbacks.Points
+            Its ``xs`` and ``ys`` are the cell's place on the axes.
+        """
+        if not points.xs:
+            return
+        speeds, values = (self._chart[name].values for name in ("speed", self._chart.dims[0]))
+        column = int(np.abs(speeds / self.study.speed.unit - points.xs[0]).argmin())
+        row = int(np.abs(values / self._quantity.unit - points.ys[0]).argmin())
+        self._place(column, row)
+        self._show_cell()
+
+    def _place(self, column: int, row: int) -> None:
+        """Put the sliders on a cell without showing it yet."""
+        for slider, place in ((self.column, column), (self.row, row)):
+            slider.unobserve(self._moved, "value")
+            slider.value = place
+            slider.observe(self._moved, "value")
+
+    def _moved(self, _change: Any) -> None:
+        self._show_cell()
+
+    def _refuse(self, problem: Exception) -> None:
+        self.message.value = (
+            f'<p role="alert" style="color:{INK};border-left:4px solid {VERMILION};padding:0 0.6em;'
+            f'line-height:1.4;white-space:normal"><b>Not possible:</b> {escape(str(problem))}. '
+            "The map still shows the last settings that were.</p>"
+        )
+
+    def _refine(self, stages: Iterator[xr.DataArray], turn: int) -> Iterator[None]:
+        """Draw the stages of the map as they are there, then the cell, unless a control has changed meanwhile."""
+        started = time.perf_counter()
+        try:
+            yield
+            while turn == self._turn and (stage := next(stages, None)) is not None:
+                self._draw(stage)
+                yield
+            if turn == self._turn:
+                self._show_cell()
+                rows, columns = self._chart.shape
+                self.status.value = _small(
+                    f"{columns} × {rows} cells, refined in {time.perf_counter() - started:.1f} s"
+                )
+        except _REFUSALS as problem:
+            self._refuse(problem)
+
+    def _draw(self, chart: xr.DataArray) -> None:
+        self._chart = chart
+        with self.figure.batch_update():
+            self.figure.layout.yaxis.title.text = self._quantity.label
+            self.figure.data[0].update(_heat(chart, self._quantity, self.study.speed))
+        done = chart.attrs["computed"] / chart.sizes["speed"]
+        self.status.value = _small(f"refining, {done:.0%} of the columns are final")
+
+    def _show_cell(self) -> None:
+        """Mark the chosen cell and show what happens in it."""
+        quantity = self._quantity
+        assert quantity.parameter is not None
+        speed = float(self._chart["speed"][self.column.value])
+        value = float(self._chart[self._chart.dims[0]][self.row.value])
+        with self.figure.batch_update():
+            self.figure.data[1].x = [speed / self.study.speed.unit]
+            self.figure.data[1].y = [value / quantity.unit]
+        self.column.description = f"{self.study.speed.label}: {speed / self.study.speed.unit:.4g}"
+        self.row.description = f"{quantity.label}: {value / quantity.unit:.4g}"
+        try:
+            detail = cell_detail(replace_parameter(self._model, quantity.parameter, value), speed)
+        except _REFUSALS as problem:
+            self._refuse(problem)
+            return
+        words = described(detail, value, quantity, self.study.speed)
+        self.report.value = (
+            f'<p class="facegear-report" style="line-height:1.4;white-space:normal">{escape(words)}</p>'
+        )
+        drawn = _png(cell_figure(detail, self.study.coordinates))
+        alt = "Multipliers in the complex plane and the critical motion. " + words
+        self.picture.value = (
+            f'<img class="facegear-cell" src="data:image/png;base64,{drawn}" alt="{escape(alt)}" '
+            'style="max-width:100%">'
+        )
+
+    def _laid_out(self) -> ipywidgets.Widget:
+        left = ipywidgets.VBox(
+            [self.vertical, *self.controls.values(), self.message],
+            layout=ipywidgets.Layout(width="32rem", max_width="100%"),
+        )
+        right = ipywidgets.VBox(
+            [self.figure, self.status, self.column, self.row, self.report, self.picture],
+            layout=ipywidgets.Layout(flex="1 1 30rem", min_width="20rem", overflow="hidden"),
+        )
+        return ipywidgets.HBox([left, right], layout=ipywidgets.Layout(flex_flow="row wrap", width="100%"))
+
+
+def _in_pieces(work: Iterator[None]) -> None:
+    """Do work piece by piece: between pieces a running event loop, if there is one, hears of new changes."""
+    try:
+        loop = asyncio.get_running_loop()
+    except RuntimeError:
+        for _ in work:
+            pass
+        return
+
+    async def do() -> None:
+        for _ in work:
+            await asyncio.sleep(0.01)
+
+    task = loop.create_task(do())
+    # The loop itself holds no reference to its tasks.
+    _TASKS.add(task)
+    task.add_done_callback(_TASKS.discard)
+
+
+_TASKS: set[asyncio.Task[None]] = set()
+
+
+def _look() -> dict[str, Any]:
+    return {
+        "layout": ipywidgets.Layout(width="98%"),
+        "style": {"description_width": "17rem"},
+    }
+
+
+def _control(control: Control) -> Any:
+    if isinstance(control, Choice):
+        return ipywidgets.Dropdown(
+            options=list(control.options), value=control.value, description=control.label, **_look()
+        )
+    limits = {"min": control.lowest, "max": control.highest, "step": control.step, "value": control.value}
+    if control.whole:
+        limits = {name: int(number) for name, number in limits.items()}
+        return ipywidgets.IntSlider(**limits, description=control.label, continuous_update=False, **_look())
+    places = max(0, -int(Decimal(str(control.step)).normalize().as_tuple().exponent))
+    return ipywidgets.FloatSlider(
+        **limits,
+        description=control.label,
+        readout_format=f".{places}f",
+        continuous_update=False,
+        **_look(),
+    )
+
+
+def _heat(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> dict[str, Any]:
+    """Turn a map into what Plotly draws: unstable growth rates as colours, all of them to hover over."""
+    growth = chart.values
+    # Gaps are None: in JSON, which goes to the page, there is no NaN.
+    shown = growth.astype(object)
+    shown[~unstable(chart)] = None
+    return {
+        "x": chart["speed"].values / speed.unit,
+        "y": chart[chart.dims[0]].values / quantity.unit,
+        "z": shown.tolist(),
+        "customdata": growth,
+        "zmin": 0.0,
+        "zmax": max(float(growth.max()), 1e-9),
+    }
+
+
+def _map_figure(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> go.FigureWidget:
+    """Map and the mark of a cell."""
+    heatmap = go.Heatmap(
+        **_heat(chart, quantity, speed),
+        colorscale=_COLOURS,
+        colorbar={"title": {"text": "growth rate [1/s]", "side": "right"}},
+        hovertemplate="%{x:.4g}, %{y:.4g}<br>growth rate %{customdata:.3g} 1/s<extra></extra>",
+    )
+    mark = go.Scatter(
+        x=[float(chart["speed"][chart.shape[1] // 2]) / speed.unit],
+        y=[float(chart[chart.dims[0]][chart.shape[0] // 2]) / quantity.unit],
+        mode="markers",
+        marker={"symbol": "circle-open", "size": 14, "color": VERMILION, "line": {"width": 3}},
+        hoverinfo="skip",
+        showlegend=False,
+    )
+    axis = {
+        "showgrid": False,
+        "zeroline": False,
+        "showline": True,
+        "linecolor": INK,
+        "ticks": "outside",
+        "fixedrange": True,
+    }
+    figure = go.FigureWidget(
+        data=[heatmap, mark],
+        layout={
+            "autosize": True,
+            "height": 430,
+            "margin": {"l": 70, "r": 10, "t": 10, "b": 60},
+            "plot_bgcolor": "white",
+            "dragmode": False,
+            "xaxis": axis | {"title": {"text": speed.label}},
+            "yaxis": axis | {"title": {"text": quantity.label}},
+            "font": {"size": 14, "color": INK},
+        },
+    )
+    # Its buttons zoom, which the axes do not, and send the chart to a server.
+    figure._config = {"displayModeBar": False, "responsive": True}
+    return figure
+
+
+def _small(text: str) -> str:
+    return f'<p class="facegear-status" style="color:{GREY}">{escape(text)}</p>'
+
+
+def _png(figure: Figure) -> str:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=100)
+    return base64.b64encode(buffer.getvalue()).decode()

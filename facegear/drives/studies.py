@@ -1,0 +1,248 @@
+"""What the live explorers of the book explore: a whole drive, Mathieu's and Meissner's equations, a gearbox."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from facegear.drives.explore import Choice, Quantity, Settings, Study
+from facegear.floquet.models import Model, replace_parameter
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.geometry.drive import Drive
+from facegear.mechanics import cases, gearboxes
+from facegear.mechanics.classical import mathieu, meissner
+from facegear.mechanics.gearboxes import ProportionalGearbox
+from facegear.mechanics.plate import Body
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, keep, nonnegative, rad_per_s, within
+
+TREGOLD, TRUE_SWEEP = "Tregold, as printed", "true sweep"
+
+_RPM = float(rad_per_s(1.0))
+_DEGREE = math.pi / 180.0
+# Angles that the second and third pinion have when they are first switched on [°].
+_SECOND, _THIRD = 120.0, 240.0
+
+
+def _speed(highest_rpm: float) -> Quantity:
+    return Quantity(
+        "highest_speed", "speed of the face gear [rpm]", 100.0, 3000.0, highest_rpm, 50.0, unit=_RPM
+    )
+
+
+def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000.0) -> Study:
+    """Transverse vibration of a whole drive: teeth, body, bearings, one to three pinions, power.
+
+    Parameters
+    ----------
+    model : Transverse, optional
+        Where the controls stand at first; that of Fig. 4.4(a) if left out.
+    highest_speed_rpm : float
+        End of the speed axis [rpm of the face gear].
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    ValueError
+        If a value of the model lies outside the range of its control, or its contact ratio is neither of the two.
+    """
+    start = cases.FIGURES["4.4a"].model() if model is None else model
+    body, drive, load = start.body, start.body.drive, start.load
+    degrees = [math.degrees(angle) % 360.0 for angle in start.pinion_angles]
+    degrees += [_SECOND, _THIRD][len(degrees) - 1 :]
+    horsepower = 0.0
+    if start.power is not None and start.power_speed is not None:
+        # The power control holds at the highest speed: the same force.
+        full = rad_per_s(highest_speed_rpm) / drive.gear_ratio
+        horsepower = start.power / start.power_speed * full / WATT_PER_HORSEPOWER
+    clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
+    ratio = next((name for name, value in clocks.items() if value == start.mesh_contact_ratio), None)
+    if ratio is None:
+        raise ValueError(
+            f"contact_ratio of the model must be {clocks[TREGOLD]:.6g} (Tregold) or {clocks[TRUE_SWEEP]:.6g} (true "
+            f"sweep) for these teeth, got {start.mesh_contact_ratio!r}"
+        )
+    controls = (
+        Quantity("pinion_teeth", "teeth of the pinion", 12, 60, drive.pinion_teeth, 1, whole=True),
+        Quantity("gear_teeth", "teeth of the face gear", 40, 260, drive.gear_teeth, 1, whole=True),
+        Quantity("module", "module [mm]", 1.0, 8.0, drive.module * 1e3, 0.025, unit=1e-3),
+        Quantity(
+            "thickness_ratio",
+            "thickness h/a",
+            0.015,
+            0.09,
+            body.thickness_ratio,
+            0.0005,
+            parameter="body.thickness_ratio",
+        ),
+        Quantity("bore_radius", "radius of the bore [mm]", 10.0, 200.0, body.bore_radius * 1e3, 1.0, 1e-3),
+        Quantity(
+            "stiffness", "bearing stiffness μ", 0.0, 2.0, load.stiffness, 0.05, parameter="load.stiffness"
+        ),
+        Quantity(
+            "damping",
+            "bearing damping ζ [µs]",
+            0.0,
+            200.0,
+            load.damping * 1e6,
+            0.5,
+            unit=1e-6,
+            parameter="load.damping",
+        ),
+        Quantity("mass", "pinion mass τ", 0.0, 2.0, load.mass, 0.05, parameter="load.mass"),
+        Choice("pinions", "number of pinions", ("1", "2", "3"), str(len(start.pinion_angles))),
+        Quantity(
+            "second_angle",
+            "angle of the 2nd [°]",
+            5.0,
+            355.0,
+            degrees[1],
+            0.1,
+            unit=_DEGREE,
+            when=("pinions", "2", "3"),
+        ),
+        Quantity(
+            "third_angle",
+            "angle of the 3rd [°]",
+            5.0,
+            355.0,
+            degrees[2],
+            0.1,
+            unit=_DEGREE,
+            when=("pinions", "3"),
+        ),
+        Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), ratio),
+        Quantity(
+            "power",
+            "power of a pinion at top speed [hp]",
+            0.0,
+            1500.0,
+            horsepower,
+            10.0,
+            unit=WATT_PER_HORSEPOWER,
+            parameter="power",
+        ),
+    )
+    return Study(controls, _drive_model, "stiffness", _speed(highest_speed_rpm))
+
+
+def _drive_model(settings: Settings) -> Model:
+    drive = Drive(settings["pinion_teeth"], settings["gear_teeth"], settings["module"])
+    body = Body(drive, settings["thickness_ratio"], bore_radius=settings["bore_radius"])
+    angles = (0.0, settings["second_angle"], settings["third_angle"])[: int(settings["pinions"])]
+    return Transverse(
+        body,
+        MeshLoad(settings["stiffness"], settings["damping"], settings["mass"]),
+        pinion_angles=angles,
+        contact_ratio=drive.geometric_contact_ratio if settings["contact_ratio"] == TRUE_SWEEP else None,
+        power=settings["power"],
+        power_speed=settings["highest_speed"] / drive.gear_ratio,
+    )
+
+
+@dataclass(frozen=True)
+class Oscillator:
+    """One coordinate with a periodic stiffness, over the parametric frequency instead of a speed.
+
+    Parameters
+    ----------
+    depth : float
+        ε [-], not negative.
+    damping_ratio : float
+        ϑ [-], from 0 to below 1.
+    duty : float, optional
+        Of a square wave (Meissner's equation); a cosine (Mathieu's) if left out.
+    """
+
+    depth: float
+    damping_ratio: float
+    duty: float | None = None
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            depth=nonnegative("depth", self.depth),
+            damping_ratio=within("damping_ratio", self.damping_ratio, 0.0, math.nextafter(1.0, 0.0)),
+            duty=None if self.duty is None else within("duty", self.duty, 0.001, 0.999),
+        )
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equation of motion at a parametric frequency [rad/s], the natural frequency being 1 rad/s."""
+        if self.duty is None:
+            return mathieu(speed, self.depth, self.damping_ratio)
+        return meissner(speed, self.depth, self.duty, self.damping_ratio)
+
+
+COSINE, SQUARE = "cosine (Mathieu)", "square (Meissner)"
+
+
+def oscillator_study() -> Study:
+    """Mathieu's and Meissner's equation with damping, over parametric frequency and depth."""
+    controls = (
+        Choice("wave", "stiffness", (COSINE, SQUARE), COSINE),
+        Quantity("depth", "depth of modulation ε", 0.0, 0.95, 0.4, 0.01, parameter="depth"),
+        Quantity("damping_ratio", "damping ratio ϑ", 0.0, 0.2, 0.02, 0.002, parameter="damping_ratio"),
+        Quantity("duty", "duty of the square wave", 0.05, 0.95, 0.5, 0.01, when=("wave", SQUARE)),
+    )
+    speed = Quantity("highest_speed", "parametric frequency ω/ω₀", 0.5, 5.0, 2.6, 0.1)
+
+    def build(settings: Settings) -> Model:
+        duty = settings["duty"] if settings["wave"] == SQUARE else None
+        return Oscillator(settings["depth"], settings["damping_ratio"], duty)
+
+    return Study(controls, build, "depth", speed, coordinates=("q",))
+
+
+def gearbox_study(
+    model: ProportionalGearbox | None = None, highest_speed_rpm: float = gearboxes.HIGHEST_SPEED_RPM
+) -> Study:
+    """Torsional vibration of the gearbox of table 7.1: inertias, shafts, mesh.
+
+    Parameters
+    ----------
+    model : ProportionalGearbox, optional
+        Where the controls stand at first; that of Fig. 7.12(a) if left out.
+    highest_speed_rpm : float
+        End of the speed axis [rpm of the face gear].
+
+    Returns
+    -------
+    Study
+    """
+    start = gearboxes.FIGURES["7.12a"].model() if model is None else model
+
+    def quantity(
+        name: str, label: str, lowest: float, highest: float, step: float, unit: float = 1.0
+    ) -> Quantity:
+        value = getattr(start, name) / unit
+        return Quantity(name, label, lowest, max(highest, value), value, step, unit, parameter=name)
+
+    controls = (
+        quantity("gear_inertia", "gear inertia J₂/J₁", 1.0, 100.0, 1.0),
+        quantity("load_inertia", "load inertia Jₒ/J₁", 1.0, 100.0, 1.0),
+        quantity("input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        quantity("output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        quantity("mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
+        quantity("input_damping", "input damping c₁/k₁ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        quantity("output_damping", "output damping c₂/k₂ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        quantity("correction_factor", "correction of the mesh stiffness c_f", 0.05, 1.0, 0.05),
+    )
+    names = tuple(control.name for control in controls)
+
+    def build(settings: Settings) -> Model:
+        changed = start
+        for name in names:
+            if name in settings:
+                changed = replace_parameter(changed, name, settings[name])
+        return changed
+
+    return Study(
+        controls,
+        build,
+        "input_damping",
+        _speed(highest_speed_rpm),
+        coordinates=("pinion", "face gear", "load"),
+    )

@@ -1,0 +1,267 @@
+"""Whether a drive is safe, said in words: under which contact ratio and which direction of the driving force.
+
+The driving force of chapter 6 either stays tangent to the bent rim, as the dissertation has it, or keeps its direction
+in space. Which of them a real tooth force does is not known, and it decides between flutter and none, so that both are
+computed; and so is the contact ratio, Tregold's and that of the true sweep, whichever the file asks for. Each case has
+a basis of its own that is raised until its unstable speeds stand still (:mod:`facegear.drives.basis`).
+"""
+
+from __future__ import annotations
+
+import html
+import unicodedata
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share
+from facegear.drives.drive_file import DriveFile
+from facegear.floquet.modal import modal_expansion
+from facegear.maps.parallel import in_processes
+from facegear.maps.tracing import Tongue
+from facegear.mechanics.edge_stiffness import Following, complete_harmonics
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import rpm
+
+_FORCES: dict[Following, str] = {"follower": "force follows the rim", "dead": "force keeps its direction"}
+# Speeds at which the mean system is tried for flutter.
+_SPEEDS = 61
+# Windows that are named one by one.
+_NAMED = 3
+# Two cases whose unstable parts of the speeds differ by more than this are said to differ.
+_ALIKE = 0.05
+
+
+@dataclass(frozen=True)
+class Case:
+    """A drive under one contact ratio and one direction of the driving force.
+
+    Attributes
+    ----------
+    clock : str
+        Name of the contact ratio.
+    following : {"follower", "dead"}
+    found : SettledTongues
+    flutter_share : float
+        Part of the range of speed in which the mean system alone is unstable, sampled at 61 speeds.
+    """
+
+    clock: str
+    following: Following
+    found: SettledTongues
+    flutter_share: float
+
+    @property
+    def name(self) -> str:
+        """Both in words."""
+        return f"{self.clock}, {_FORCES[self.following]}"
+
+
+def driven(file: DriveFile, following: Following, contact_ratio: float) -> Transverse:
+    """Model of a drive file with the force that its power takes, all harmonics of its stress included.
+
+    Parameters
+    ----------
+    file : DriveFile
+    following : {"follower", "dead"}
+    contact_ratio : float
+        Mesh periods that a tooth pair stays in mesh.
+    """
+    duty, model = file.requirements, file.transverse
+    return replace(
+        model,
+        contact_ratio=contact_ratio,
+        power=duty.power,
+        power_speed=duty.pinion_speed,
+        following=following,
+        stress_harmonics=complete_harmonics(model.body),
+    )
+
+
+def clocks(file: DriveFile) -> dict[str, float]:
+    """Names and values of both contact ratios, that of the file first."""
+    drive, own = file.drive, file.transverse.mesh_contact_ratio
+    both = {"Tregold": drive.contact_ratio, "true sweep": drive.geometric_contact_ratio}
+    return dict(sorted(both.items(), key=lambda item: abs(item[1] - own)))
+
+
+def cases(
+    file: DriveFile, *, tolerance: float = 0.02, most_steps: int = 5, jobs: int = -1
+) -> tuple[Case, ...]:
+    """Tongues of a drive under its power, for both contact ratios and both directions of the force.
+
+    Parameters
+    ----------
+    file : DriveFile
+    tolerance, most_steps
+        As for :func:`facegear.drives.basis.settled_tongues`.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``.
+
+    Returns
+    -------
+    tuple of Case
+        Those with the file's contact ratio first, the following force before the dead one.
+    """
+    settings = [(clock, ratio, force) for clock, ratio in clocks(file).items() for force in _FORCES]
+    models = [driven(file, force, ratio) for _, ratio, force in settings]
+    work = [(model, file.requirements.speed_range, tolerance, most_steps) for model in models]
+    found = in_processes(_settled, work, jobs)
+    return tuple(
+        Case(clock, force, *result) for (clock, _, force), result in zip(settings, found, strict=True)
+    )
+
+
+def _settled(
+    model: Transverse, speed_range: tuple[float, float], tolerance: float, most_steps: int
+) -> tuple[SettledTongues, float]:
+    found = settled_tongues(model, speed_range, tolerance=tolerance, most_steps=most_steps)
+    growth = [mean_growth_rate(found.model, float(speed)) for speed in np.linspace(*speed_range, _SPEEDS)]
+    return found, float(np.mean(np.array(growth) > 0.0))
+
+
+def mean_growth_rate(model: Transverse, speed: float) -> float:
+    """Growth rate of the system averaged over a mesh period [1/s]: positive where the drive flutters."""
+    return modal_expansion(model.system(speed), 1).mean_growth_rate
+
+
+# --- in words ---------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a report opens with.
+
+    Attributes
+    ----------
+    headline : str
+        Safe or not, in one sentence.
+    findings : tuple of str
+        One sentence a case: at which speeds, by which mechanism, in which basis.
+    left_out : str
+        What none of this includes.
+    """
+
+    headline: str
+    findings: tuple[str, ...]
+    left_out: str
+
+
+def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongue] | None) -> Verdict:
+    """Say whether a drive is safe.
+
+    Parameters
+    ----------
+    file : DriveFile
+    computed : sequence of Case
+        From :func:`cases`.
+    torsional : sequence of Tongue, optional
+        Tongues of the gearbox, if the file has one.
+
+    Returns
+    -------
+    Verdict
+    """
+    low, high = (f"{rpm(speed):.4g}" for speed in file.requirements.speed_range)
+    where = f"from {low} to {high} rpm at {1e-3 * file.requirements.power:.4g} kW a pinion"
+    shares = {case: case.found.unstable_share for case in computed}
+    unstable = [case for case in computed if shares[case] > 0.0]
+    if len(unstable) == len(computed):
+        headline = (
+            f"Not safe: unstable at some speeds {where}, whatever is assumed of contact ratio and force."
+        )
+    elif unstable:
+        headline = f"Not shown to be safe {where}: it depends on {_what_decides(computed)}."
+    else:
+        headline = (
+            f"Stable at all speeds {where}, under both contact ratios and both directions of the force."
+        )
+    if torsional:
+        headline += " In torsion it is unstable at some speeds."
+    elif torsional is not None:
+        headline += " In torsion it is stable at all of them."
+    findings = [_finding(case) for case in computed]
+    if torsional is not None:
+        spoken = _speeds(torsional, file.requirements.speed_range)
+        findings.append(f"Torsion: {spoken}{_resonances(torsional)}.")
+    return Verdict(headline, tuple(findings), _left_out(file))
+
+
+def _what_decides(computed: Sequence[Case]) -> str:
+    """Name what parts stable cases from unstable ones."""
+    stable = {(case.clock, case.following): not case.found.tongues for case in computed}
+    clock = any(stable[c, f] != stable[d, f] for c, f in stable for d, g in stable if f == g)
+    force = any(stable[c, f] != stable[c, g] for c, f in stable for d, g in stable if c == d)
+    names = ["the contact ratio"] * clock + ["whether the driving force follows the bent rim"] * force
+    return " and on ".join(names)
+
+
+def _finding(case: Case) -> str:
+    """Say at which speeds a case is unstable, by which mechanism, in which basis."""
+    found = case.found
+    last = found.steps[-1]
+    basis = f"{last.nodal_circles} nodal circles and {last.nodal_diameters} nodal diameters"
+    if len(found.steps) == 1:
+        sure = f"{basis}; no larger basis was tried"
+    else:
+        sure = f"{basis}; the basis before differs at {100 * last.moved:.2g} % of the speeds"
+    if not found.settled:
+        sure += ", NOT SETTLED"
+    spoken = _speeds(found.tongues, found.speed_range)
+    if case.flutter_share > 0.0:
+        cause = f"; at {100 * case.flutter_share:.3g} % of the speeds the disk flutters by the driving force alone"
+    else:
+        cause = _resonances(found.tongues)
+    return f"{case.name[0].upper()}{case.name[1:]}: {spoken}{cause} ({sure})."
+
+
+def _speeds(found: Sequence[Tongue], speed_range: tuple[float, float]) -> str:
+    if not found:
+        return "stable at all speeds"
+    widest = sorted(sorted(found, key=lambda tongue: -tongue.width)[:_NAMED], key=lambda tongue: tongue.lower)
+    named = ", ".join(f"{rpm(tongue.lower):.4g} to {rpm(tongue.upper):.4g}" for tongue in widest)
+    rest = len(found) - len(widest)
+    others = f" and {rest} narrower {'interval' if rest == 1 else 'intervals'}" if rest else ""
+    growth = max(tongue.growth_rate for tongue in found)
+    share = 100 * unstable_share(found, speed_range)
+    return f"unstable at {share:.3g} % of the speeds ({named} rpm{others}; growth up to {growth:.3g} 1/s)"
+
+
+def _resonances(found: Sequence[Tongue]) -> str:
+    """Name the strongest resonance."""
+    if not found:
+        return ""
+    strongest = max(found, key=lambda tongue: tongue.growth_rate)
+    return f"; parametric resonance, the strongest {strongest.label} at {rpm(strongest.peak):.4g} rpm"
+
+
+def _left_out(file: DriveFile) -> str:
+    torsion = "" if file.torsional is not None else "torsion (the file has no section gearbox), "
+    return (
+        f"Not included: {torsion}the flexibility of the teeth, how tooth pairs share the load, the inertia of the "
+        "moving contact (total rate), tooth errors and backlash, the stiffness of the housing. All parameters are "
+        "taken as exact; speeds outside the range are not looked at."
+    )
+
+
+def as_html(words: str) -> str:
+    """Text from a file as HTML that shows it and does nothing else.
+
+    Markup and formulas in it stay as they are written; line breaks and other control characters become blanks.
+
+    Parameters
+    ----------
+    words : str
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> as_html("A <b> & $x$")
+    '<span class="tex2jax_ignore mathjax_ignore">A &lt;b&gt; &amp; $x$</span>'
+    """
+    visible = "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Zl", "Zp") else c for c in words)
+    return f'<span class="tex2jax_ignore mathjax_ignore">{html.escape(visible)}</span>'

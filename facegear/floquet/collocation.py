@@ -1,0 +1,548 @@
+"""Contact-force collocation: fast transition matrices of systems with rank-one loads.
+
+Between contacts' instants of entry and exit the free motion of the constant part M q̈ + C q̇ + K q = 0 is known
+exactly from its modes, and all that is unknown are the contact forces
+
+    f_a = k_a u_a + c_a u̇_a + m_a ü_a,    u_a = φ_aᵀ q,
+
+a few scalar functions of time. They are found at the Gauss nodes of panels that end at the breakpoints. With
+modal coordinates y of the free motion, ẏ = Λ y − Σ β_a f_a, variation of constants gives on each panel
+
+    [I + k H₀ + c H₁ + m (H₂ + D)] f = (k F₀ + c F₁ + m F₂) y₀,    y₁ = E y₀ − G f
+
+where H_s = h a_ij Re Σ_m z_s,im e^{p_m (t_i − t_j)} β_jm, with spectral integration weights a_ij; z₀, z₁, z₂ turn
+modal coordinates into u, u̇, ü of the free motion and D_ab = φ_aᵀ M⁻¹ φ_b, which carries the contact mass exactly.
+H, F, E, G do not depend on k, c, m, so a whole column of a map shares them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.floquet.periodic import ContactLoad, LoadColumn, PeriodicSystem
+from facegear.floquet.piecewise import Array, PiecewiseChebyshev, merge_breakpoints
+
+ComplexArray = NDArray[np.complex128]
+
+#: Gauss nodes a panel.
+DEFAULT_NODES = 16
+#: Largest product of fastest frequency and panel length [rad].
+DEFAULT_PANEL_ANGLE = 9.0
+#: Estimated error of the motion over one panel at which it is halved, in units of the root of the energy.
+PANEL_TOLERANCE = 1e-12
+# Rounds of halving before a system is refused.
+_MOST_HALVINGS = 8
+# Systems share panels if they turn by at least this part of the largest angle among them in a period.
+_SHARED = 0.6
+# Entries of the largest stack of matrices of a family: as many as fit in a cache.
+_ENTRIES = 500_000
+
+
+class UnsuitableSystemError(ValueError):
+    """The free motion of a system is not a sum of oscillations, which contact-force collocation needs."""
+
+
+@dataclass(frozen=True, eq=False)
+class FreeModes:
+    """Modes of M q̈ + C q̇ + K q = 0: q = Re(displacement y), q̇ = Re(velocity y), y = coordinates (q, q̇).
+
+    Attributes
+    ----------
+    eigenvalues : array of complex, shape (..., n)
+        p with positive imaginary part [1/s].
+    displacement, velocity : array of complex, shape (..., n, n)
+        Columns of modes, scaled to unit kinetic energy.
+    coordinates : array of complex, shape (..., n, 2n)
+        y from the state.
+    input : array of complex, shape (..., n, n)
+        Modal acceleration by a force on the coordinates: coordinates' velocity half times M⁻¹.
+    """
+
+    eigenvalues: ComplexArray
+    displacement: ComplexArray
+    velocity: ComplexArray
+    coordinates: ComplexArray
+    input: ComplexArray
+
+    @classmethod
+    def of(cls, system: PeriodicSystem) -> FreeModes:
+        """Find the modes of the constant part of a system.
+
+        Raises
+        ------
+        UnsuitableSystemError
+            If a mode does not oscillate (rigid-body or overdamped) or the modes do not span the state space.
+        """
+        return cls._of(system.mass, system.damping, system.stiffness)
+
+    @classmethod
+    def of_all(cls, systems: Sequence[PeriodicSystem]) -> FreeModes:
+        """Find the modes of several systems of one size, with the systems along the first axis; as :meth:`of`."""
+        return cls._of(
+            *(np.stack([getattr(x, name) for x in systems]) for name in ("mass", "damping", "stiffness"))
+        )
+
+    @classmethod
+    def _of(cls, mass: Array, damping: Array, stiffness: Array) -> FreeModes:
+        n = mass.shape[-1]
+        inverse = np.linalg.inv(np.linalg.cholesky(mass))
+        root = inverse.swapaxes(-1, -2)
+        stiffness, damping = inverse @ stiffness @ root, inverse @ damping @ root
+        scale = np.sqrt(np.abs(stiffness).max(axis=(-1, -2), keepdims=True))
+        if (scale == 0.0).any():
+            raise UnsuitableSystemError("stiffness is zero: every free motion is a rigid-body motion")
+        # In the state (scale·x, ẋ) both halves have the size of a root energy.
+        state = np.zeros((*mass.shape[:-2], 2 * n, 2 * n))
+        state[..., :n, n:] = scale * np.eye(n)
+        state[..., n:, :n], state[..., n:, n:] = -stiffness / scale, -damping
+        values, vectors = np.linalg.eig(state)
+        oscillating = values.imag > 1e-9 * np.abs(values).max(axis=-1, keepdims=True)
+        counts = np.count_nonzero(oscillating, axis=-1)
+        if (counts != n).any():
+            raise UnsuitableSystemError(
+                f"the free motion has {counts[counts != n].flat[0]} oscillating modes, not {n}: "
+                "some are rigid-body or overdamped"
+            )
+        values = values[oscillating].reshape(*mass.shape[:-2], n)
+        columns = vectors.swapaxes(-1, -2)[oscillating].reshape(*mass.shape[:-2], n, 2 * n)
+        vectors = columns.swapaxes(-1, -2)
+        vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
+        basis = np.concatenate([vectors, vectors.conj()], axis=-1)
+        condition = np.max(np.linalg.cond(basis))
+        if not condition < 1e5:
+            raise UnsuitableSystemError(
+                f"the free modes are close to dependent (condition number {condition:.2g})"
+            )
+        # x = Re(W y) with y twice the coefficients of the pairs W c + conj(W c).
+        rows = 2.0 * np.linalg.inv(basis)[..., :n, :]
+        to_energy = np.linalg.inv(root)
+        return cls(
+            eigenvalues=values,
+            displacement=root @ vectors[..., :n, :] / scale,
+            velocity=root @ vectors[..., n:, :],
+            coordinates=np.concatenate(
+                [rows[..., :n] * scale @ to_energy, rows[..., n:] @ to_energy], axis=-1
+            ),
+            input=np.asarray(rows[..., n:] @ inverse, dtype=complex),
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of modes n."""
+        return int(self.eigenvalues.shape[-1])
+
+    def state_from_real(self) -> Array:
+        """Matrix from (Re y, Im y) to (q, q̇), shape (..., 2n, 2n)."""
+        both = np.concatenate([self.displacement, self.velocity], axis=-2)
+        return np.concatenate([both.real, -both.imag], axis=-1)
+
+    def real_from_state(self) -> Array:
+        """Matrix from (q, q̇) to (Re y, Im y), shape (..., 2n, 2n)."""
+        return np.concatenate([self.coordinates.real, self.coordinates.imag], axis=-2)
+
+
+@lru_cache(maxsize=16)
+def gauss_rule(nodes: int) -> tuple[Array, Array, Array]:
+    """Gauss-Legendre nodes and weights on [0, 1], and a_ij = ∫_0^{x_i} l_j, shape (nodes, nodes)."""
+    x, weights = np.polynomial.legendre.leggauss(nodes)
+    degrees = np.arange(nodes)
+    legendre = np.polynomial.legendre.legvander(x, nodes)
+    # l_j = Σ_d (2d+1)/2 w_j P_d(x_j) P_d and ∫_{-1}^x P_d = (P_{d+1} − P_{d−1})/(2d+1).
+    coefficients = (degrees + 0.5)[:, None] * legendre[:, :nodes].T * weights
+    integrals = np.empty((nodes, nodes))
+    integrals[:, 0] = x + 1.0
+    integrals[:, 1:] = (legendre[:, 2:] - legendre[:, : nodes - 1]) / (2 * degrees[1:] + 1)
+    return (x + 1.0) / 2.0, weights / 2.0, integrals @ coefficients / 2.0
+
+
+@lru_cache(maxsize=16)
+def _last_coefficients(nodes: int) -> Array:
+    """Matrix from values at Gauss nodes to the last two Legendre coefficients, shape (2, nodes)."""
+    x, weights, _ = gauss_rule(nodes)
+    last = np.polynomial.legendre.legvander(2.0 * x - 1.0, nodes - 1)[:, -2:]
+    return np.asarray((last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T, dtype=float)
+
+
+def panel_edges(breakpoints: Array, angle: float, panel_angle: float) -> Array:
+    """Return ends of panels: all breakpoints, and points between for a fastest motion of `angle` a period."""
+    ends = np.append(breakpoints[1:], 1.0)
+    counts = np.ceil((ends - breakpoints) * angle / panel_angle).astype(int)
+    pieces = [
+        np.linspace(start, end, max(int(count), 1), endpoint=False)
+        for start, end, count in zip(breakpoints, ends, counts, strict=True)
+    ]
+    return np.append(np.concatenate(pieces), 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class _Panels:
+    """Everything that does not depend on the load parameters; S systems, P panels, N nodes, p loads, n modes.
+
+    Attributes
+    ----------
+    force_on_force : array, shape (3, S, P, N p, N p)
+        H₀, H₁, H₂ + D.
+    force_on_state : array, shape (3, S, P, N p, 2n)
+        F₀, F₁, F₂, acting on (Re y, Im y).
+    free : array, shape (S, P, 2n, 2n)
+        E.
+    input : array, shape (S, P, 2n, N p)
+        G.
+    """
+
+    force_on_force: Array
+    force_on_state: Array
+    free: Array
+    input: Array
+
+    def halved(self, chosen: NDArray[np.bool_], halves: _Panels) -> _Panels:
+        """Return the panels with the two halves of each chosen one in its place."""
+        return _Panels(
+            _in_place(chosen, self.force_on_force, halves.force_on_force, axis=2),
+            _in_place(chosen, self.force_on_state, halves.force_on_state, axis=2),
+            _in_place(chosen, self.free, halves.free, axis=1),
+            _in_place(chosen, self.input, halves.input, axis=1),
+        )
+
+
+def _in_place(chosen: NDArray[np.bool_], whole: Array, halves: Array, axis: int) -> Array:
+    """Put halves, two for each chosen entry along an axis, in the place of these entries."""
+    new = np.repeat(chosen, 1 + chosen)
+    kept = np.count_nonzero(~chosen)
+    place = np.where(new, kept + np.cumsum(new), np.cumsum(~new)) - 1
+    return np.concatenate([whole.compress(~chosen, axis), halves], axis).take(place, axis)
+
+
+def _split(matrix: ComplexArray) -> Array:
+    """Real rows (Re, −Im), so that Re(matrix y) = rows (Re y, Im y)."""
+    return np.concatenate([matrix.real, -matrix.imag], axis=-1)
+
+
+def _build(
+    systems: Sequence[PeriodicSystem], modes: FreeModes, nodes: int, start: Array, length: Array
+) -> _Panels:
+    x, weights, integration = gauss_rule(nodes)
+    periods = np.array([system.period for system in systems])
+    systems_, count, p, n = len(systems), start.size, len(systems[0].loads), modes.size
+    fractions = start[:, None] + length[:, None] * x
+    h = periods[:, None] * length
+    # Exponentials from the middle of each panel, so that neither they nor their inverses grow large.
+    exponents = modes.eigenvalues[:, None, :] * h[:, :, None]
+    spread = np.exp(exponents[:, :, None, :] * (x[:, None] - 0.5))
+    half = np.exp(exponents / 2.0)
+
+    # Modes act on the last axis of what is known at all nodes of all panels: (S or 1, P, N p, n).
+    def values(part: Callable[[ContactLoad], PiecewiseChebyshev]) -> Array:
+        found = _at_nodes(systems, part, fractions)
+        return found.reshape(len(found), count * nodes * p, n)
+
+    def readings(by: Array, factors: ComplexArray) -> ComplexArray:
+        return np.asarray((by @ factors).reshape(systems_, count, nodes, p, n), dtype=complex)
+
+    phi = values(lambda load: load.shape)
+    weighted = phi
+    if any(load.weight is not None for load in systems[0].loads):
+        factor = _at_nodes(systems, _weight, fractions)
+        weighted = phi * factor.reshape(len(factor), count * nodes * p, 1)
+    velocity = modes.velocity
+    acceleration = velocity * modes.eigenvalues[:, None, :]
+    read = np.stack([readings(phi, part) for part in (modes.displacement, velocity, acceleration)])
+    total = np.array([load.rate == "total" for load in systems[0].loads])
+    if total.any():
+        rate = total[:, None] / periods[:, None, None, None, None]
+        slope = values(lambda load: load.slope)
+        read[1] += rate * readings(slope, modes.displacement)
+        read[2] += 2.0 * rate * readings(slope, velocity)
+        read[2] += rate**2 * readings(values(lambda load: load.curvature), modes.displacement)
+    beta = readings(weighted, modes.input.swapaxes(-1, -2))
+
+    rows = (read * spread[:, :, :, None, :]).reshape(3, systems_, count, nodes * p, n)
+    columns = (beta / spread[:, :, :, None, :]).reshape(systems_, count, nodes * p, n)
+    kernel = _split(rows) @ np.concatenate([columns.real, columns.imag], axis=-1).swapaxes(-1, -2)
+    window = np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
+    force_on_force = kernel * (h[:, :, None, None] * window)
+    inverse = np.linalg.inv(np.stack([system.mass for system in systems]))
+    moved = (weighted @ inverse).reshape(systems_, count, nodes, p, n)
+    direct = phi.reshape(len(phi), count, nodes, p, n) @ moved.swapaxes(-1, -2)
+    blocks = force_on_force[2].reshape(systems_, count, nodes, p, nodes, p)
+    blocks[:, :, np.arange(nodes), :, np.arange(nodes), :] += np.moveaxis(direct, 2, 0)
+
+    push = (columns * half[:, :, None, :]) * (h[:, :, None] * np.repeat(weights, p))[..., None]
+    decay = half**2
+    free = np.zeros((systems_, count, 2 * n, 2 * n))
+    i = np.arange(n)
+    free[..., i, i] = free[..., n + i, n + i] = decay.real
+    free[..., n + i, i] = decay.imag
+    free[..., i, n + i] = -decay.imag
+    return _Panels(
+        force_on_force=force_on_force,
+        force_on_state=_split(rows * half[:, :, None, :]),
+        free=free,
+        input=np.concatenate([push.real, push.imag], axis=-1).swapaxes(-1, -2),
+    )
+
+
+_ALWAYS_ONE = PiecewiseChebyshev.constant([1.0])
+
+
+def _weight(load: ContactLoad) -> PiecewiseChebyshev:
+    return _ALWAYS_ONE if load.weight is None else load.weight
+
+
+def _at_nodes(
+    systems: Sequence[PeriodicSystem], part: Callable[[ContactLoad], PiecewiseChebyshev], fractions: Array
+) -> Array:
+    """Values of one function of each load, (S, P, N, p, components), or (1, ...) if all systems share them."""
+    functions = [[part(load) for load in system.loads] for system in systems]
+    if all(own is first for row in functions[1:] for own, first in zip(row, functions[0], strict=True)):
+        functions = functions[:1]
+    if not functions[0]:
+        return np.empty((1, *fractions.shape, 0, systems[0].size))
+    return np.stack([np.stack([function(fractions) for function in row], axis=-2) for row in functions])
+
+
+class FreeMotion:
+    """A system prepared for many values of its load parameters up to those of `column`, or many systems for one each.
+
+    Parameters
+    ----------
+    systems : sequence of PeriodicSystem
+        One for all values of the column, or one a value; of one size, with common breakpoints. Their own load
+        parameters are not used.
+    column : LoadColumn
+        The values that will be asked for, so that the panels suit the fastest of them.
+    nodes : int
+        Gauss nodes a panel.
+    panel_angle : float
+        Largest product of fastest frequency and panel length [rad].
+    instants : array
+        Fractions of the period that panels end at, besides the breakpoints.
+
+    Raises
+    ------
+    UnsuitableSystemError
+        See :meth:`FreeModes.of`.
+    """
+
+    def __init__(
+        self,
+        systems: Sequence[PeriodicSystem],
+        column: LoadColumn,
+        nodes: int = DEFAULT_NODES,
+        panel_angle: float = DEFAULT_PANEL_ANGLE,
+        instants: Sequence[float] = (),
+    ) -> None:
+        self.systems = systems
+        self.modes = FreeModes.of_all(systems)
+        samples = np.linspace(0.0, 1.0, 16, endpoint=False)
+        shapes = _at_nodes(systems, lambda load: load.shape, samples)
+        mass = np.stack([system.mass for system in systems])[:, None]
+        moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
+        self.mobility = (shapes * moved).sum(axis=-1).max(axis=1)
+        stiffest = (column.stiffness * self.mobility).sum(axis=-1).max()
+        periods = np.array([system.period for system in systems])
+        frequencies = np.abs(self.modes.eigenvalues).max(axis=-1)
+        angle = float((np.hypot(frequencies, np.sqrt(stiffest)) * periods).max())
+        ends = merge_breakpoints([systems[0].breakpoints, np.array(instants)])
+        self.edges = panel_edges(ends, angle, panel_angle)
+        self.panels = _build(systems, self.modes, nodes, self.edges[:-1], np.diff(self.edges))
+        known = column.extremes() if len(systems) == 1 else column
+        self._known = (known, self._halve_unresolved_panels(known, nodes))
+        self.kicks = [self._kick_data(system) for system in systems]
+
+    def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> Array:
+        """Halve panels until the contact forces of all initial states are resolved at the given values.
+
+        Returns these forces.
+
+        The state at the end of a panel converges twice as fast as the force along it: if the last Legendre
+        coefficients of the force are ε of its size, ε² is left of its effect.
+        """
+        tail = _last_coefficients(nodes)
+        force = self._forces(column, self.panels)
+        for _ in range(_MOST_HALVINGS):
+            shape = (*force.shape[:2], nodes, -1, force.shape[-1])
+            size = np.abs(force).max(axis=2, initial=0.0)
+            rough = np.abs(np.einsum("ti,vpias->vptas", tail, force.reshape(shape))).max(
+                axis=(2, 3), initial=0.0
+            )
+            effect = np.abs(self.panels.input).sum(axis=-1).max(axis=-1)
+            relative = rough / np.where(size > 0.0, size, 1.0)
+            error = (effect[..., None] * size * relative**2).max(axis=(0, 2), initial=0.0)
+            unresolved = error > PANEL_TOLERANCE
+            if not unresolved.any():
+                return force
+            middle = (self.edges[:-1] + self.edges[1:]) / 2.0
+            self.edges = np.sort(np.concatenate([self.edges, middle[unresolved]]))
+            new = np.repeat(unresolved, 1 + unresolved)
+            halves = _build(self.systems, self.modes, nodes, self.edges[:-1][new], np.diff(self.edges)[new])
+            self.panels = self.panels.halved(unresolved, halves)
+            force = _in_place(unresolved, force, self._forces(column, halves), axis=1)
+        raise UnsuitableSystemError(
+            f"the contact forces are too rough: {self.edges.size - 1} panels do not resolve them"
+        )
+
+    def _kick_data(self, system: PeriodicSystem) -> list[tuple[int, int, Array, Array]]:
+        """Panel, load, φ and Δφ̇ of each slope jump of a load with total rate."""
+        found = []
+        for a, load in enumerate(system.loads):
+            if load.rate != "total":
+                continue
+            jumps = load.slope.jumps() / system.period
+            for at, jump in zip(load.shape.breakpoints, jumps, strict=True):
+                panel = int(np.argmin(np.abs(self.edges[:-1] - at)))
+                found.append((panel, a, load.shape(at), jump))
+        return found
+
+    def transition_matrices(self, column: LoadColumn) -> Array:
+        """Φ in the modal coordinates (Re y, Im y) for each value of a column, shape (V, 2n, 2n)."""
+        panels = self.panels
+        if len(self.systems) > 1:
+            return self._chunk(column)
+        count, states, size = panels.input.shape[1:]
+        # A chunk of values at a time keeps the memory near 100 MB.
+        chunk = max(1, 4_000_000 // (count * max(size, states) * (size + states)))
+        parts = []
+        for begin in range(0, len(column), chunk):
+            part = slice(begin, begin + chunk)
+            parts.append(
+                self._chunk(LoadColumn(column.mass[part], column.damping[part], column.stiffness[part]))
+            )
+        return np.concatenate(parts)
+
+    @staticmethod
+    def _forces(column: LoadColumn, panels: _Panels) -> Array:
+        """Contact forces at the nodes of each panel, for unit modal coordinates at its start, (V, P, N p, 2n)."""
+        size = panels.input.shape[-1]
+        repeats = size // max(column.mass.shape[1], 1)
+        left = np.broadcast_to(np.eye(size), (len(column), *panels.force_on_force.shape[2:])).copy()
+        right = np.zeros((len(column), *panels.force_on_state.shape[2:]))
+        for order, values in enumerate((column.stiffness, column.damping, column.mass)):
+            if values.any():
+                factor = np.tile(values, (1, repeats))[:, None, :, None]
+                left += factor * panels.force_on_force[order]
+                right += factor * panels.force_on_state[order]
+        return np.asarray(np.linalg.solve(left, right), dtype=float)
+
+    def transition_matrices_to(self, instants: Sequence[float], column: LoadColumn) -> Array:
+        """Φ from the period's origin to some of the instants, for one value, shape (K, 2n, 2n); as Φ of the period."""
+        steps = self._steps(column)[0]
+        reached = [np.eye(steps.shape[-1])]
+        for step in steps:
+            reached.append(step @ reached[-1])
+        ends = [int(np.argmin(np.abs(self.edges - instant))) for instant in instants]
+        return np.stack([reached[end] for end in ends])
+
+    def _chunk(self, column: LoadColumn) -> Array:
+        return chain(self._steps(column))
+
+    def _steps(self, column: LoadColumn) -> Array:
+        """Transition matrices of the panels, shape (V, P, 2n, 2n)."""
+        known, forces = self._known
+        if not np.array_equal(known.stacked(), column.stacked()):
+            forces = self._forces(column, self.panels)
+        steps = self.panels.free - self.panels.input @ forces
+        if column.mass.any():
+            for number in range(len(self.systems)):
+                own = slice(None) if len(self.systems) == 1 else slice(number, number + 1)
+                for panel, matrices in self._kicks(number, column.mass[own]).items():
+                    steps[own, panel] = steps[own, panel] @ matrices
+        return np.asarray(steps, dtype=float)
+
+    def _kicks(self, number: int, masses: Array) -> dict[int, Array]:
+        """Jumps of the modal coordinates of a system before a panel, each of shape (V, 2n, 2n)."""
+        system, data = self.systems[number], self.kicks[number]
+        kicks: dict[int, Array] = {}
+        if not data:
+            return kicks
+        n = system.size
+        to_state, to_real = self.modes.state_from_real()[number], self.modes.real_from_state()[number]
+        for panel in sorted({panel for panel, *_ in data}):
+            at = self.edges[panel]
+            shapes = np.stack([load.shape(at) for load in system.loads])
+            mass = system.mass + np.einsum("va,ai,aj->vij", masses, shapes, shapes)
+            impulse = np.zeros((len(masses), n, n))
+            for where, a, shape, jump in data:
+                if where == panel:
+                    impulse += masses[:, a, None, None] * np.outer(shape, jump)
+            velocity = -np.linalg.solve(mass, impulse)
+            kicks[panel] = np.eye(2 * n) + to_real[:, n:] @ velocity @ to_state[:n]
+        return kicks
+
+
+def chain(steps: Array) -> Array:
+    """Product steps[:, -1] ... steps[:, 1] steps[:, 0], by pairs, shape (V, m, d, d) -> (V, d, d)."""
+    while steps.shape[1] > 1:
+        even = steps.shape[1] - steps.shape[1] % 2
+        pairs = steps[:, 1:even:2] @ steps[:, 0:even:2]
+        steps = np.concatenate([pairs, steps[:, even:]], axis=1)
+    return steps[:, 0]
+
+
+def is_suitable(system: PeriodicSystem) -> bool:
+    """Whether contact-force collocation applies: oscillating free modes, contact forces it resolves."""
+    try:
+        FreeMotion([system], LoadColumn.of(system))
+    except UnsuitableSystemError:
+        return False
+    return True
+
+
+def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) -> Array:
+    """Transition matrices of the state (q, q̇) from the period's origin to some fractions of it, shape (K, 2n, 2n).
+
+    Where an instant is a breakpoint with a velocity kick, the state is that just before it.
+
+    Raises
+    ------
+    UnsuitableSystemError
+        If the free motion has rigid-body, overdamped or defective modes.
+    """
+    column = LoadColumn.of(system)
+    motion = FreeMotion([system], column, instants=instants)
+    modes = motion.modes
+    return np.asarray(
+        modes.state_from_real() @ motion.transition_matrices_to(instants, column) @ modes.real_from_state()
+    )
+
+
+def transition_matrices(
+    systems: Sequence[PeriodicSystem], nodes: int = DEFAULT_NODES, panel_angle: float = DEFAULT_PANEL_ANGLE
+) -> Array:
+    """Floquet transition matrices of the state (q, q̇), shape (V, 2n, 2n).
+
+    Parameters
+    ----------
+    systems : sequence of PeriodicSystem
+        With common size and breakpoints.
+    nodes : int
+        Gauss nodes a panel.
+    panel_angle : float
+        Largest product of fastest frequency and panel length [rad].
+
+    Raises
+    ------
+    UnsuitableSystemError
+        If the free motion has rigid-body, overdamped or defective modes.
+    """
+    turns = np.array([system.period * np.sqrt(np.abs(system.stiffness).max()) for system in systems])
+    loads, size = len(systems[0].loads) * nodes, 2 * systems[0].size
+    matrices = np.empty((len(systems), size, size))
+    order = np.argsort(-turns)
+    while order.size:
+        # Panels that resolve one system resolve all that turn a little less in a period.
+        panels = systems[0].breakpoints.size + int(turns[order[0]] / panel_angle)
+        together = order[: max(1, _ENTRIES // (panels * max(loads, size) * (loads + size)))]
+        together = together[turns[together] >= _SHARED * turns[together[0]]]
+        order = order[together.size :]
+        family = [systems[number] for number in together.tolist()]
+        column = LoadColumn.from_stacked(np.concatenate([LoadColumn.of(x).stacked() for x in family]))
+        motion = FreeMotion(family, column, nodes, panel_angle)
+        found = motion.transition_matrices(column)
+        matrices[together] = motion.modes.state_from_real() @ found @ motion.modes.real_from_state()
+    return matrices

@@ -1,0 +1,175 @@
+"""Names of instabilities: which modes, sum or difference, which order.
+
+The motion of the critical multiplier λ = e^{(σ + iθ/T0) T0} is made of the natural motions of the mean system, of
+which those matter that keep in step with it: ±ω_k ≡ θ/T0 modulo ω = 2π/T0. Two such, Ω_a − Ω_b ≈ sω, make a
+combination resonance of order s. It is a sum if their frequencies have different signs, else a difference. Modes are
+numbered as in :mod:`facegear.floquet.modal`, by ascending natural frequency of the mean system at the given speed.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+
+from facegear.floquet.collocation import UnsuitableSystemError, transition_matrices_to
+from facegear.floquet.multipliers import Method, transition_matrix
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import Array
+
+ComplexArray = NDArray[np.complex128]
+Kind = Literal["sum", "difference", "mean"]
+
+# Instants of the period over which the part of each mode in the motion is averaged.
+_INSTANTS = 8
+# Relative size below which the imaginary part of an eigenvalue is rounding, as in facegear.floquet.modal.
+_ROUNDING = 1e-11
+# Distance from exact resonance, as a part of ω, at which a pair counts half.
+_DETUNING = 0.1
+
+
+@dataclass(frozen=True)
+class Combination:
+    """Modes and order of an instability.
+
+    Attributes
+    ----------
+    k, j : int
+        Numbers of the natural frequencies, from 1, ascending; equal for a single frequency; 0 if the growing
+        motion of the mean system does not oscillate.
+    kind : {"sum", "difference", "mean"}
+        sω ≈ ω_k + ω_j, sω ≈ ω_j − ω_k, or the mean system is unstable by itself.
+    order : int
+        s; 0 for the mean system.
+    """
+
+    k: int
+    j: int
+    kind: Kind
+    order: int
+
+    @property
+    def label(self) -> str:
+        """Such as "(1+2)/1" or "(3-1)/2", as :attr:`facegear.floquet.hsu.ResonanceBand.label`; "mean 2" for flutter."""
+        if self.kind == "mean":
+            return f"mean {self.k}"
+        if self.kind == "sum":
+            return f"({self.k}+{self.j})/{self.order}"
+        return f"({self.j}-{self.k})/{self.order}"
+
+
+def combination(system: PeriodicSystem, method: Method | None = None) -> Combination:
+    """Name the instability of a system after the modes that take part in its critical motion.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+        An unstable one, best taken at the peak of the growth rate.
+    method : Method, optional
+        Method of :mod:`facegear.floquet.multipliers` for the transition matrix of the period.
+
+    Returns
+    -------
+    Combination
+        Of all pairs with Ω_a − Ω_b near a multiple of ω the one with the largest product of actions in the motion.
+        "mean" if the mean system by itself grows at least half as fast.
+    """
+    modes = _MeanModes.of(system)
+    matrix = transition_matrix(system, method)
+    values, vectors = np.linalg.eig(matrix)
+    critical = int(np.abs(values).argmax())
+    growth = float(np.log(np.abs(values[critical]))) / system.period
+    fastest = int(modes.eigenvalues.real.argmax())
+    if growth > 0.0 and modes.eigenvalues[fastest].real >= 0.5 * growth:
+        number = int(modes.numbers[fastest])
+        return Combination(number, number, "mean", 0)
+    action = np.zeros(modes.eigenvalues.size)
+    for state in _critical_motion(system, complex(values[critical]), vectors[:, critical], method):
+        action += modes.action(state)
+    return _strongest_pair(modes, action, 2.0 * np.pi / system.period)
+
+
+@dataclass(frozen=True, eq=False)
+class _MeanModes:
+    """Natural motions of the mean system.
+
+    Attributes
+    ----------
+    eigenvalues : complex array, shape (2n,)
+    numbers : int array, shape (2n,)
+        Number of the mode from 1, by ascending frequency, for both signs; 0 for those that do not oscillate.
+    coordinates : complex array, shape (2n, 2n)
+        Amplitudes of the natural motions, of unit energy, from the state (q, q̇).
+    """
+
+    eigenvalues: ComplexArray
+    numbers: NDArray[np.int64]
+    coordinates: ComplexArray
+
+    @classmethod
+    def of(cls, system: PeriodicSystem) -> _MeanModes:
+        mass, damping, stiffness = (series.mean for series in system.fourier(1))
+        squares, modes = eigh((stiffness + stiffness.T) / 2.0, mass)
+        scale = np.sqrt(np.maximum(np.abs(squares), 1e-12 * np.abs(squares).max()))
+        n = system.size
+        state = np.zeros((2 * n, 2 * n))
+        state[:n, n:] = np.diag(scale)
+        state[n:, :n] = -(modes.T @ stiffness @ modes) / scale
+        state[n:, n:] = -(modes.T @ damping @ modes)
+        values, right = np.linalg.eig(state)
+        to_modal = modes.T @ mass
+        zero = np.zeros((n, n))
+        energy = np.block([[scale[:, None] * to_modal, zero], [zero, to_modal]])
+        numbers = np.zeros(2 * n, dtype=np.int64)
+        positive = np.flatnonzero(values.imag > _ROUNDING * np.abs(values).max())
+        positive = positive[np.argsort(values.imag[positive])]
+        for number, index in enumerate(positive.tolist(), start=1):
+            numbers[index] = number
+            numbers[np.abs(values - values[index].conj()).argmin()] = number
+        # Nearly dependent motions, as at critical damping, only blur the shares.
+        return cls(values, numbers, np.linalg.pinv(right) @ energy)
+
+    def action(self, state: ComplexArray) -> Array:
+        """Energy over frequency of each natural motion in a state, in parts of the whole."""
+        energy = np.abs(self.coordinates @ state) ** 2
+        frequency = np.abs(self.eigenvalues.imag)
+        action = np.where(self.numbers > 0, energy / np.where(frequency > 0.0, frequency, 1.0), 0.0)
+        return np.asarray(action / max(float(action.sum()), np.finfo(float).tiny), dtype=float)
+
+
+def _critical_motion(
+    system: PeriodicSystem, critical: complex, state: ComplexArray, method: Method | None
+) -> list[ComplexArray]:
+    """States (q, q̇) of a multiplier's motion at instants of the period, up to a factor, from the first of them."""
+    instants = [instant / _INSTANTS for instant in range(_INSTANTS)]
+    with suppress(UnsuitableSystemError):
+        return list(transition_matrices_to(instants, system) @ state)
+    return [_critical_state(system.shift(instant), critical, method) for instant in instants]
+
+
+def _critical_state(system: PeriodicSystem, critical: complex, method: Method | None) -> ComplexArray:
+    values, vectors = np.linalg.eig(transition_matrix(system, method))
+    return np.asarray(vectors[:, np.abs(values - critical).argmin()], dtype=complex)
+
+
+def _strongest_pair(modes: _MeanModes, action: Array, frequency: float) -> Combination:
+    """Pair of natural motions in step with one another that has the largest part in the motion."""
+    best, chosen = -1.0, Combination(0, 0, "mean", 0)
+    oscillating = np.flatnonzero(modes.numbers > 0)
+    for a in oscillating.tolist():
+        for b in oscillating.tolist():
+            apart = float(modes.eigenvalues[a].imag - modes.eigenvalues[b].imag)
+            order = round(apart / frequency)
+            if order < 1:
+                continue
+            detuning = abs(apart / frequency - order) / _DETUNING
+            weight = float(np.sqrt(action[a] * action[b])) / (1.0 + detuning**2)
+            if weight > best:
+                k, j = sorted((int(modes.numbers[a]), int(modes.numbers[b])))
+                opposite = modes.eigenvalues[a].imag * modes.eigenvalues[b].imag < 0.0
+                best, chosen = weight, Combination(k, j, "sum" if opposite else "difference", order)
+    return chosen

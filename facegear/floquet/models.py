@@ -1,0 +1,195 @@
+"""What maps need of a model: a system at each speed, and a copy with one parameter replaced.
+
+A model is a frozen dataclass with a method ``system(speed)``. Its parameters are its own numbers and those of
+the dataclasses it holds: ``stiffness`` of a transverse model is that of its mesh load, ``thickness_ratio`` that
+of its body.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from functools import cache
+from numbers import Real
+from typing import Any, Protocol, TypeVar, get_args, get_type_hints
+
+from facegear.floquet.periodic import PeriodicSystem, without_rigid_motion
+
+
+class Model(Protocol):
+    """Anything with a periodic system at each speed [rad/s]."""
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed [rad/s]."""
+        ...
+
+
+ModelT = TypeVar("ModelT", bound=Model)
+
+
+@dataclass(frozen=True)
+class WithoutRigidMotion:
+    """A model whose rigid-body motions are taken out at each speed.
+
+    See :func:`facegear.floquet.periodic.without_rigid_motion`.
+
+    Parameters
+    ----------
+    model : Model
+        Such as a train of gears on shafts that hang on nothing.
+    """
+
+    model: Model
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of what is left, at a constant speed [rad/s]."""
+        return without_rigid_motion(self.model.system(speed))
+
+
+def parameter_names(model: object) -> tuple[str, ...]:
+    """Dotted names of the numbers a model is made of, its own first, then those of the dataclasses it holds.
+
+    Parameters
+    ----------
+    model : dataclass
+        For example :class:`facegear.mechanics.transverse.Transverse`.
+
+    Returns
+    -------
+    tuple of str
+        Such as ``"load.stiffness"``, ``"body.thickness_ratio"``, ``"body.drive.pinion_teeth"``.
+    """
+    found: list[str] = []
+    level: list[tuple[str, Any]] = [("", model)]
+    while level:
+        below: list[tuple[str, Any]] = []
+        for prefix, part in level:
+            for field in dataclasses.fields(part) if _is_dataclass(part) else ():
+                value = getattr(part, field.name)
+                if _is_dataclass(value):
+                    below.append((f"{prefix}{field.name}.", value))
+                elif field.init and (_is_number(value) or _takes_number(part, field.name)):
+                    found.append(prefix + field.name)
+        level = below
+    return tuple(found)
+
+
+def parameter_path(model: object, name: str) -> tuple[str, ...]:
+    """Path of field names that lead to a parameter.
+
+    Parameters
+    ----------
+    model : dataclass
+    name : str
+        Name of a field, or a dotted name where the same one occurs twice. Of equal names the one nearest to the
+        model is meant, if there is only one there.
+
+    Raises
+    ------
+    TypeError
+        If the model is not a dataclass.
+    ValueError
+        If there is no such parameter, naming those that exist, or if several are equally near.
+    """
+    if not _is_dataclass(model):
+        raise TypeError(f"model must be a dataclass with a method system(speed), got {type(model).__name__}")
+    names = parameter_names(model)
+    if name in names:
+        return tuple(name.split("."))
+    matches = [other for other in names if other.endswith(f".{name}")]
+    nearest = min((other.count(".") for other in matches), default=0)
+    matches = [other for other in matches if other.count(".") == nearest]
+    if not matches:
+        raise ValueError(
+            f"parameter must be one of {', '.join(names)} (the last part is enough), got {name!r}"
+        )
+    if len(matches) > 1:
+        raise ValueError(f"parameter {name!r} could be {' or '.join(matches)}: give the dotted name")
+    return tuple(matches[0].split("."))
+
+
+def replace_parameter(model: ModelT, name: str, value: float) -> ModelT:
+    """Return the model with one of its parameters replaced.
+
+    Parameters
+    ----------
+    model : dataclass with a method ``system``
+    name : str
+        As for :func:`parameter_path`.
+    value : float
+        New value, in the unit of the field. A field declared as ``int`` takes whole numbers only.
+
+    Raises
+    ------
+    TypeError, ValueError
+        From :func:`parameter_path`, or from the model's own check of the value.
+    """
+    replaced: ModelT = replace_at(model, parameter_path(model, name), value)
+    return replaced
+
+
+def value_of(model: object, name: str) -> float:
+    """Present value of a parameter of a model, named as for :func:`parameter_path`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        From :func:`parameter_path`, or if the parameter is optional and not given.
+    """
+    part: Any = model
+    for field in parameter_path(model, name):
+        part = getattr(part, field)
+    if part is None:
+        raise ValueError(f"{name} is None, the model's default: give it a number to start from")
+    return float(part)
+
+
+def is_whole_number(model: object, name: str) -> bool:
+    """Whether a parameter counts something, as teeth: its field is declared as ``int``."""
+    *outer, last = parameter_path(model, name)
+    part: Any = model
+    for field in outer:
+        part = getattr(part, field)
+    return bool(_declared(part).get(last) is int)
+
+
+def replace_at(part: Any, path: tuple[str, ...], value: float) -> Any:
+    """Return a dataclass with the parameter at the end of a path of fields replaced.
+
+    Parameters
+    ----------
+    part : dataclass
+    path : tuple of str
+        From :func:`parameter_path`.
+    value : float
+        As for :func:`replace_parameter`.
+    """
+    name, rest = path[0], path[1:]
+    if rest:
+        return dataclasses.replace(part, **{name: replace_at(getattr(part, name), rest, value)})
+    if _declared(part).get(name) is int and float(value).is_integer():
+        return dataclasses.replace(part, **{name: int(value)})
+    return dataclasses.replace(part, **{name: value})
+
+
+def _is_dataclass(value: Any) -> bool:
+    return dataclasses.is_dataclass(value) and not isinstance(value, type)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def _takes_number(part: Any, name: str) -> bool:
+    """Whether an optional field that is None now is declared to take a number."""
+    return float in get_args(_declared(part).get(name))
+
+
+def _declared(part: object) -> dict[str, Any]:
+    """Return declared types of the fields of a dataclass."""
+    kind: Any = type(part)
+    return _type_hints(kind)
+
+
+# Resolving annotations takes longer than anything else here.
+_type_hints = cache(get_type_hints)

@@ -1,0 +1,341 @@
+"""Transition matrices as smooth functions of speed, interpolated, so that thousands of speeds cost little.
+
+The free motion turns by ω T0 in a period and T0 is in inverse proportion to speed: in the variable 1/speed the
+transition matrix is a smooth function of even oscillation, and Chebyshev series on windows of it converge fast.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from facegear.floquet.collocation import UnsuitableSystemError, is_suitable
+from facegear.floquet.lobatto import interleaved, lobatto_points, values_to_coefficients
+from facegear.floquet.models import Model
+from facegear.floquet.multipliers import (
+    AdaptiveMagnus,
+    Collocation,
+    Method,
+    disturbed,
+    rounding_error,
+    transition_matrices,
+)
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import Array
+from facegear.floquet.stepping import Family
+
+ComplexArray = NDArray[np.complex128]
+
+# Size of the last Chebyshev coefficients relative to the largest entry or 1.
+_TOLERANCE = 1e-11
+# A window spans so much of the fastest live angle [rad] to begin with, and is cut in two if the degree is not enough.
+_WINDOW_ANGLE = 200.0
+_LOWEST_DEGREE = 8
+# Degree of the series from which the degree is read that motions need: far above what a window's angle asks for.
+_LONGEST = 256
+_DOUBLINGS = 1
+_MOST_CUTS = 12
+# A motion that decays by e⁻³⁰ = 1e-13 in a period leaves nothing in the transition matrix.
+_DEAD = 30.0
+# Slowness of systems computed together differs by this factor at most: they share panels or sub-intervals.
+_TOGETHER = 1.4
+# Matrices of which eigenvalues are found at once, and the sum of the third powers of their sizes.
+_MOST_AT_ONCE, _CUBES_AT_ONCE = 512, 100_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class FrozenMotions:
+    """Motions e^{p T0} of a model frozen at some instants, as functions of slowness 1/speed.
+
+    Attributes
+    ----------
+    low, high : float
+        Range of slowness.
+    exponents : complex array, shape (m,)
+        p T0 over slowness.
+    """
+
+    low: float
+    high: float
+    exponents: ComplexArray
+
+    @classmethod
+    def of(cls, model: Model, low: float, high: float) -> FrozenMotions:
+        """Freeze a model in the middle of its smooth pieces, at both ends of a range of slowness."""
+        found = []
+        for slowness in (low, high):
+            family = Family([model.system(1.0 / slowness)])
+            middles = family.breakpoints + np.diff(np.append(family.breakpoints, 1.0)) / 2.0
+            found.append(np.linalg.eigvals(family.state_matrices(middles)).ravel() / slowness)
+        return cls(low, high, np.concatenate(found).astype(complex))
+
+    @cached_property
+    def live_angle(self) -> tuple[Array, Array]:
+        """Slowness, ascending, and angle [rad] by which the fastest motion turns that has not died within a period.
+
+        The angle is summed up from the first slowness on and runs straight between.
+        """
+        decay = np.maximum(-self.exponents.real, _DEAD / (2.0 * self.high))
+        dead = _DEAD / decay
+        slowness = np.unique(np.clip(np.append(dead, [self.low, self.high]), self.low, self.high))
+        middle = (slowness[1:] + slowness[:-1]) / 2.0
+        fastest = np.where(dead > middle[:, None], np.abs(self.exponents.imag), 0.0).max(axis=1)
+        return slowness, np.append(0.0, np.cumsum(fastest * np.diff(slowness)))
+
+    def points(self, step: float, fewest: int) -> Array:
+        """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range."""
+        slowness, angle = self.live_angle
+        density = angle / step + fewest * (slowness - self.low) / (self.high - self.low)
+        # Where nothing oscillates there are the two ends.
+        places = np.linspace(0.0, density[-1], max(int(np.ceil(density[-1])), 1) + 1)
+        points = np.interp(places, density, slowness)
+        points[[0, -1]] = self.low, self.high
+        return np.asarray(points, dtype=float)
+
+    def degree(self, low: float, high: float) -> int:
+        """Even degree at which the Chebyshev series of all motions between two values of slowness have ended."""
+        half = (high - low) / 2.0
+        # Twice the largest angle is far beyond the last Bessel function that counts.
+        turn = float(np.abs(self.exponents.imag).max()) * half
+        nodes = low + half * (1.0 + lobatto_points(min(_LONGEST, 2 * int(turn) + 64)))
+        decaying = np.minimum(self.exponents.real, 0.0) + 1j * self.exponents.imag
+        motions = np.exp(decaying * nodes[:, None])
+        sizes = np.abs(values_to_coefficients(nodes.size - 1) @ motions).max(axis=1)
+        last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
+        return max(_LOWEST_DEGREE, 2 * ((last + 2) // 2))
+
+
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """Chebyshev series of the scaled transition matrix for slowness 1/speed between `low` and `high`."""
+
+    low: float
+    high: float
+    coefficients: Array
+
+    def values(self, slowness: Array) -> Array:
+        """Matrices, shape (m, d, d)."""
+        return self._sum(self.coefficients, slowness)
+
+    def slopes(self, slowness: Array) -> Array:
+        """Their derivatives by slowness, shape (m, d, d)."""
+        return self._sum(self._slope_coefficients, slowness)
+
+    @cached_property
+    def _slope_coefficients(self) -> Array:
+        half = (self.high - self.low) / 2.0
+        return np.asarray(chebyshev.chebder(self.coefficients, axis=0) / half, dtype=float)
+
+    def _sum(self, coefficients: Array, slowness: Array) -> Array:
+        local = (slowness - (self.high + self.low) / 2.0) / ((self.high - self.low) / 2.0)
+        angle = np.arccos(np.clip(local, -1.0, 1.0))
+        basis = np.cos(angle[:, None] * np.arange(coefficients.shape[0]))
+        return np.tensordot(basis, coefficients, axes=1)
+
+
+def _unheard(count: int) -> None:
+    """Do nothing with a number of matrices."""
+
+
+@dataclass(frozen=True, eq=False)
+class MultiplierCurve:
+    """Floquet multipliers of a model against speed, from interpolated transition matrices.
+
+    Attributes
+    ----------
+    model : Model
+    method : Method
+        Method of the transition matrices.
+    lowest_speed, highest_speed : float
+        Range of speed [rad/s].
+    motions : FrozenMotions
+        How fast the model moves and what dies within a period.
+    windows : tuple
+        Series on parts of the range.
+    looked_at : callable
+        Told the number of matrices whenever some are interpolated, for a progress bar.
+    """
+
+    model: Model
+    method: Method
+    lowest_speed: float
+    highest_speed: float
+    motions: FrozenMotions
+    windows: tuple[_Window, ...]
+    looked_at: Callable[[int], object] = _unheard
+
+    @classmethod
+    def of(
+        cls,
+        model: Model,
+        lowest_speed: float,
+        highest_speed: float,
+        method: Method | None = None,
+        looked_at: Callable[[int], object] = _unheard,
+    ) -> MultiplierCurve:
+        """Interpolate the transition matrices of a model between two speeds [rad/s].
+
+        `looked_at` is told the number of matrices whenever some have been computed or interpolated.
+
+        Raises
+        ------
+        ArithmeticError
+            If they do not vary smoothly with speed.
+        """
+        scale = Family([model.system(highest_speed)]).scale
+        inverse = np.linalg.inv(scale)
+        chosen = method_for(model, lowest_speed, highest_speed) if method is None else method
+
+        def matrices(slowness: Array) -> Array:
+            found = np.empty((slowness.size, *scale.shape))
+            for part in _neighbours(slowness):
+                systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
+                found[part] = _family_matrices(systems, chosen)
+                looked_at(len(systems))
+            return np.asarray(scale @ found @ inverse, dtype=float)
+
+        motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
+        # No series resolves rounding, which is largest in the longest period.
+        rounding = rounding_error(np.eye(len(scale)), Family([model.system(lowest_speed)]), chosen)
+        tolerance = max(_TOLERANCE, 4.0 * rounding)
+        windows = [
+            window
+            for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
+            for window in _windows(matrices, motions, low, high, tolerance, _MOST_CUTS)
+        ]
+        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
+
+    @cached_property
+    def error(self) -> float:
+        """Largest distance of a multiplier from that of a more accurate method, at three speeds between the nodes."""
+        low, high = 1.0 / self.highest_speed, 1.0 / self.lowest_speed
+        speeds = (1.0 / (low + (high - low) * np.array([0.0371, 0.4713, 0.9329]))).tolist()
+        return max(_distance(self, self.model.system(v), v, self.method) for v in speeds)
+
+    @cached_property
+    def live(self) -> MultiplierCurve:
+        """Give the multipliers that do not vanish by smaller matrices, QᵀΦQ, where Q spans all columns of Φ.
+
+        What has died within a period leaves no column in Φ, so that Φ = QQᵀΦ, and such matrices have the same
+        eigenvalues but for zeros. Q is one for all speeds. What it leaves out is smaller than the error of the series
+        at every speed, not at its nodes only, because no Chebyshev polynomial exceeds 1.
+        """
+        terms = np.concatenate([window.coefficients for window in self.windows])
+        columns = np.moveaxis(terms, 0, 1).reshape(terms.shape[1], -1)
+        basis, sizes, _ = np.linalg.svd(np.linalg.qr(columns.T).R.T)
+        # Sums of norms are at most so many times the root of the sum of squares.
+        left_out = np.sqrt(len(terms) * np.append(np.cumsum(sizes[::-1] ** 2)[::-1], 0.0))
+        kept = basis[:, : int(np.argmax(left_out <= _TOLERANCE / 10.0))]
+        windows = (
+            _Window(window.low, window.high, np.asarray(kept.T @ window.coefficients @ kept, dtype=float))
+            for window in self.windows
+        )
+        return replace(self, windows=tuple(windows))
+
+    def transition_matrices(self, speeds: Array) -> Array:
+        """Scaled Φ at speeds (m,), shape (m, 2n, 2n)."""
+        return self._by_window(speeds, _Window.values)
+
+    def slopes(self, speeds: Array) -> Array:
+        """Differentiate the scaled Φ by 1/speed at speeds (m,), shape (m, 2n, 2n)."""
+        return self._by_window(speeds, _Window.slopes)
+
+    def _by_window(self, speeds: Array, evaluate: Callable[[_Window, Array], Array]) -> Array:
+        slowness = 1.0 / np.asarray(speeds, dtype=float)
+        self.looked_at(slowness.size)
+        if len(self.windows) == 1:
+            return evaluate(self.windows[0], slowness)
+        found = np.empty((slowness.size, *self.windows[0].coefficients.shape[1:]))
+        starts = np.array([window.low for window in self.windows])
+        where = np.clip(np.searchsorted(starts, slowness, side="right") - 1, 0, None)
+        for number in np.unique(where):
+            inside = where == number
+            found[inside] = evaluate(self.windows[number], slowness[inside])
+        return found
+
+    def spectral_radii(self, speeds: Array) -> Array:
+        """max|λ| at speeds (m,)."""
+        speeds = np.atleast_1d(speeds)
+        parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
+        eigenvalues = [np.linalg.eigvals(self.transition_matrices(part)) for part in parts]
+        return np.asarray(np.abs(np.concatenate(eigenvalues)).max(axis=-1), dtype=float)
+
+    @property
+    def batch(self) -> int:
+        """Matrices worked on at once: what takes a second or so, for no interruption is heard meanwhile."""
+        size = self.windows[0].coefficients.shape[-1]
+        return int(max(1, min(_MOST_AT_ONCE, _CUBES_AT_ONCE // size**3)))
+
+
+def method_for(model: Model, lowest_speed: float, highest_speed: float) -> Method:
+    """Collocation if it suits the model at both ends and in the middle of a range of speed, else adaptive Magnus."""
+    speeds = (lowest_speed, (lowest_speed + highest_speed) / 2.0, highest_speed)
+    if all(is_suitable(model.system(speed)) for speed in speeds):
+        return Collocation()
+    return AdaptiveMagnus()
+
+
+def _family_matrices(systems: list[PeriodicSystem], method: Method) -> Array:
+    first = systems[0].breakpoints
+    try:
+        if all(np.array_equal(system.breakpoints, first) for system in systems[1:]):
+            return transition_matrices(systems, method)
+        return np.concatenate([transition_matrices([system], method) for system in systems])
+    except UnsuitableSystemError:
+        return np.concatenate([transition_matrices([system], AdaptiveMagnus()) for system in systems])
+
+
+def _neighbours(slowness: Array) -> list[NDArray[np.intp]]:
+    """Numbers of values that lie close together, group by group."""
+    order = np.argsort(slowness)
+    steps = np.floor(np.log(slowness[order] / slowness[order[0]]) / np.log(_TOGETHER))
+    return np.split(order, np.flatnonzero(np.diff(steps)) + 1)
+
+
+def _windows(
+    evaluate: Callable[[Array], Array],
+    motions: FrozenMotions,
+    low: float,
+    high: float,
+    tolerance: float,
+    cuts: int,
+) -> list[_Window]:
+    """Series on one window, or on halves of it where its degree does not suffice."""
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    degree = motions.degree(low, high)
+    values = evaluate(middle + half * lobatto_points(degree))
+    for _ in range(_DOUBLINGS + 1):
+        if values.shape[0] <= degree:
+            values = interleaved(values, evaluate(middle + half * lobatto_points(degree)[1::2]))
+        coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
+        tail = np.abs(coefficients[-2:]).max()
+        if tail <= tolerance * max(1.0, float(np.abs(values).max())):
+            return [_Window(low, high, coefficients)]
+        degree *= 2
+    if cuts == 0:
+        raise ArithmeticError(
+            f"transition matrices do not vary smoothly with speed between {1.0 / high:.6g} and {1.0 / low:.6g} rad/s: "
+            f"the last Chebyshev coefficient is {tail:.2g}"
+        )
+    halves = ((low, middle), (middle, high))
+    return [window for part in halves for window in _windows(evaluate, motions, *part, tolerance, cuts - 1)]
+
+
+def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:
+    """Error of a multiplier of the curve, those inside 1/2 left out: distance to a refined method's, and rounding."""
+    matrix = curve.transition_matrices(np.array([speed]))[0]
+    coarse = np.linalg.eigvals(matrix)
+    fine = np.linalg.eigvals(transition_matrices([system], method.refined()))
+    rounding = rounding_error(matrix, Family([system]), method)
+    moved = np.linalg.eigvals(disturbed(matrix, rounding))
+    distance, shift = (
+        np.abs(coarse[:, None] - others[:, None, :]).min(axis=2).max(axis=0) for others in (fine, moved)
+    )
+    errors = distance + np.maximum(shift, rounding)
+    return float(errors[np.abs(coarse) > 0.5].max(initial=0.0))

@@ -1,0 +1,440 @@
+"""Floquet analysis of periodic linear systems (section 2.2.1).
+
+The state X = (q, q̇) after one period is Φ(T0, 0) X(0); the eigenvalues λ of the transition matrix Φ, the
+Floquet multipliers, decide: the system is stable if and only if every |λ| ≤ 1 (2-5 to 2-8). Each method of
+this module is a small frozen dataclass that turns a system into its Φ:
+
+- :class:`Stepwise`: the text's rule, A(t) held at its midpoint value in equal sub-intervals (2-9 to 2-11);
+- :class:`AlignedStepwise`: the same with sub-intervals that end where A(t) jumps or kinks;
+- :class:`Magnus`: fourth order, aligned, for any system, with a fixed number of sub-intervals;
+- :class:`AdaptiveMagnus`: the same, refined until an error estimate is met;
+- :class:`Collocation`: contact-force collocation, fast and spectrally accurate where it applies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.floquet import collocation
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import Array
+from facegear.floquet.stepping import Family, aligned_edges, gauss_magnus, midpoint
+from facegear.support.parameters import integer_at_least, keep, within
+
+ComplexArray = NDArray[np.complex128]
+# Changes of a transition matrix that show what rounding does to its eigenvalues.
+_CHANGES = 4
+
+
+class Method(Protocol):
+    """A way to compute the Floquet transition matrix."""
+
+    def scaled_transition_matrices(self, family: Family) -> Array:
+        """S Φ S⁻¹ of each system of a family, in its scaled coordinates, shape (V, 2n, 2n)."""
+        ...
+
+    def refined(self) -> Method:
+        """Return a method to judge this one by: clearly more accurate, and blind to other things."""
+        ...
+
+    def rounding(self, family: Family) -> float:
+        """Return how much rounding entries of Φ gather on the way, in units of the last place of the largest one."""
+        ...
+
+
+@dataclass(frozen=True)
+class Stepwise:
+    """Stepwise-constant A(t), equal sub-intervals, matrix exponential of each (2-9 to 2-11).
+
+    Second order where A(t) is continuous; first order at best, and erratic, where it jumps.
+
+    Parameters
+    ----------
+    sub_intervals : int
+        Q, number of sub-intervals of the period.
+    """
+
+    sub_intervals: int
+
+    def __post_init__(self) -> None:
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
+
+    def scaled_transition_matrices(self, family: Family) -> Array:
+        """See :class:`Method`; refuses the velocity kicks of a contact mass with total rate."""
+        if any(family.kicks):
+            raise ValueError(
+                "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
+                "which equal sub-intervals cannot place; use AlignedStepwise, Magnus or Collocation"
+            )
+        edges = np.linspace(0.0, 1.0, self.sub_intervals + 1)
+        return family.product(edges, midpoint)
+
+    def refined(self) -> Method:
+        """Aligned sub-intervals: halving equal ones can look converged where it is not (fraction 9/16)."""
+        return AlignedStepwise(2 * self.sub_intervals)
+
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
+
+
+@dataclass(frozen=True)
+class AlignedStepwise:
+    """Stepwise-constant A(t) with sub-intervals that end at the breakpoints: second order for any system.
+
+    Parameters
+    ----------
+    sub_intervals : int
+        Q; each smooth piece gets its share, rounded up.
+    """
+
+    sub_intervals: int
+
+    def __post_init__(self) -> None:
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
+
+    def scaled_transition_matrices(self, family: Family) -> Array:
+        """See :class:`Method`."""
+        return family.product(aligned_edges(family.breakpoints, self.sub_intervals), midpoint)
+
+    def refined(self) -> Method:
+        """Twice as many sub-intervals."""
+        return AlignedStepwise(2 * self.sub_intervals)
+
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
+
+
+@dataclass(frozen=True)
+class Magnus:
+    """Fourth-order Magnus integrator with two Gauss nodes a sub-interval, aligned with the breakpoints.
+
+    exp(h (A₁+A₂)/2 − √3/12 h² [A₁, A₂]), A₁ and A₂ at the Gauss nodes (Iserles, Munthe-Kaas, Nørsett and Zanna,
+    Acta Numerica 9, 2000).
+
+    Parameters
+    ----------
+    sub_intervals : int
+        Q; each smooth piece gets its share, rounded up.
+    """
+
+    sub_intervals: int
+
+    def __post_init__(self) -> None:
+        keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
+
+    def scaled_transition_matrices(self, family: Family) -> Array:
+        """See :class:`Method`."""
+        return family.product(aligned_edges(family.breakpoints, self.sub_intervals), gauss_magnus)
+
+    def refined(self) -> Method:
+        """Twice as many sub-intervals."""
+        return Magnus(2 * self.sub_intervals)
+
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
+
+
+@dataclass(frozen=True)
+class AdaptiveMagnus:
+    """Magnus integrator, sub-intervals halved and extrapolated (up to order 10) until two results agree.
+
+    Parameters
+    ----------
+    tolerance : float
+        Largest error of an entry of Φ, in energy-like coordinates, relative to the largest entry or 1, rounding not
+        counted: it grows with the integral of ‖A‖ over the period, damping included, and :func:`error_estimate`
+        counts it. Strong dampers are for :class:`facegear.floquet.radau.Radau`.
+
+    Raises
+    ------
+    ArithmeticError
+        When used, if 2¹⁷ sub-intervals do not reach the tolerance.
+    """
+
+    tolerance: float = 1e-10
+
+    def __post_init__(self) -> None:
+        keep(self, tolerance=within("tolerance", self.tolerance, 1e-13, 1e-2))
+
+    def scaled_transition_matrices(self, family: Family) -> Array:
+        """See :class:`Method`."""
+        start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
+        factor = 1
+        row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
+        while True:
+            factor *= 2
+            edges = aligned_edges(family.breakpoints, start, factor)
+            finer = [family.product(edges, gauss_magnus)]
+            # The method is symmetric, its error runs in even powers h⁴, h⁶, ...: Richardson's extrapolation.
+            for order, coarse in zip((4, 6, 8), row, strict=False):
+                finer.append(finer[-1] + (finer[-1] - coarse) / (2.0**order - 1.0))
+            size = np.maximum(np.abs(finer[-1]).max(axis=(1, 2)), 1.0)
+            change = np.abs(finer[-1] - finer[-2]).max(axis=(1, 2))
+            if (change <= self.tolerance * size).all():
+                return finer[-1]
+            if edges.size > 2**17 or not np.isfinite(size).all():
+                raise ArithmeticError(
+                    f"transition matrix did not reach tolerance {self.tolerance:.1g} with {edges.size - 1} "
+                    "sub-intervals; the period is too long for the fastest motion or growth"
+                )
+            row = finer
+
+    def refined(self) -> Method:
+        """Return the method with a hundredth of the tolerance."""
+        return AdaptiveMagnus(max(self.tolerance / 100.0, 1e-13))
+
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
+        return family.exponent_norm
+
+
+@dataclass(frozen=True)
+class Collocation:
+    """Contact-force collocation (:mod:`facegear.floquet.collocation`): exact free motion, forces at Gauss nodes.
+
+    Parameters
+    ----------
+    nodes : int
+        Gauss nodes a panel.
+    panel_angle : float
+        Largest product of fastest frequency and panel length [rad].
+
+    Raises
+    ------
+    collocation.UnsuitableSystemError
+        When used on a system whose free motion has rigid-body, overdamped or defective modes.
+    """
+
+    nodes: int = collocation.DEFAULT_NODES
+    panel_angle: float = collocation.DEFAULT_PANEL_ANGLE
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            nodes=integer_at_least("nodes", self.nodes, 2),
+            # Beyond 14 rad the kernel of a heavily damped mode loses its digits.
+            panel_angle=within("panel_angle", self.panel_angle, 0.1, 14.0),
+        )
+
+    def scaled_transition_matrices(self, family: Family) -> Array:
+        """See :class:`Method`."""
+        matrices = collocation.transition_matrices(family.systems, self.nodes, self.panel_angle)
+        return np.asarray(family.scale @ matrices @ family.inverse_scale, dtype=float)
+
+    def refined(self) -> Method:
+        """Half as many nodes again and shorter panels."""
+        return Collocation(self.nodes + self.nodes // 2, 0.7 * self.panel_angle)
+
+    def rounding(self, family: Family) -> float:
+        """See :class:`Method`: phases are known to the last place of the angle."""
+        return family.fastest_angle
+
+
+def default_method(system: PeriodicSystem) -> Method:
+    """Return the method used when none is named: collocation where it applies, else adaptive Magnus."""
+    return Collocation() if collocation.is_suitable(system) else AdaptiveMagnus()
+
+
+def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> Array:
+    """Floquet transition matrix Φ(T0, 0) of the state (q, q̇) (2-6).
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    method : Method, optional
+        One of the methods of this module; :func:`default_method` if left out.
+
+    Returns
+    -------
+    array, shape (2n, 2n)
+        Where the period's origin is a breakpoint with a velocity kick, Φ runs from just before it.
+    """
+    family = Family([system])
+    scaled = _scaled_transition_matrix(family, method)
+    return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
+
+
+def _scaled_transition_matrix(family: Family, method: Method | None) -> Array:
+    """Φ of a single system, by :func:`default_method` if none is named, shape (2n, 2n)."""
+    # Asking first whether collocation applies would set it up twice, which is most of the work.
+    try:
+        matrices = (method or Collocation()).scaled_transition_matrices(family)
+    except collocation.UnsuitableSystemError:
+        if method is not None:
+            raise
+        matrices = AdaptiveMagnus().scaled_transition_matrices(family)
+    return np.asarray(matrices[0], dtype=float)
+
+
+def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
+    """Transition matrices of a family of systems with common size and breakpoints, computed together.
+
+    Parameters
+    ----------
+    systems : sequence of PeriodicSystem
+        V systems; their periods, constant matrices and load parameters may differ.
+    method : Method, optional
+        :class:`AdaptiveMagnus` if left out, which takes the whole family at once.
+
+    Returns
+    -------
+    array, shape (V, 2n, 2n)
+        In the state (q, q̇).
+
+    Raises
+    ------
+    ValueError
+        If sizes, numbers of loads or breakpoints differ.
+    """
+    chosen = AdaptiveMagnus() if method is None else method
+    family = Family(systems)
+    scaled = chosen.scaled_transition_matrices(family)
+    return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
+
+
+def multipliers(system: PeriodicSystem, method: Method | None = None) -> ComplexArray:
+    """Floquet multipliers, eigenvalues of the transition matrix (2-8), largest modulus first.
+
+    All have about the same absolute error, that of Φ. Of an overdamped motion in a long period no digit is left, and
+    what stands for its multiplier may be rounding: :func:`multiplier_errors` tells.
+
+    Returns
+    -------
+    array of complex, shape (2n,)
+    """
+    values = _eigenvalues(_scaled_transition_matrix(Family([system]), method))
+    return np.asarray(values[np.argsort(-np.abs(values), kind="stable")], dtype=complex)
+
+
+def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
+    """Growth rate ln(max|λ|)/T0 [1/s] (2-8); the system is unstable where it is positive.
+
+    Where all motions die within a period it is known no better than max|λ|, whose error is relative to 1.
+    """
+    radius = np.abs(multipliers(system, method)[0])
+    return float(np.log(radius) / system.period)
+
+
+def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
+    """Largest modulus of the multipliers of each system of a family, shape (V,).
+
+    As :func:`transition_matrices`, without turning back to the state (q, q̇).
+    """
+    chosen = AdaptiveMagnus() if method is None else method
+    values = _eigenvalues(chosen.scaled_transition_matrices(Family(systems)))
+    return np.asarray(np.abs(values).max(axis=-1), dtype=float)
+
+
+def error_estimate(system: PeriodicSystem, method: Method) -> float:
+    """Estimate of the error of the spectral radius max|λ| found by a method.
+
+    The dominant multiplier of the method is compared with the nearest one of its refinement, and the other way
+    round. That distance bounds the difference of the two spectral radii, and unlike that difference it does not
+    vanish because both lie on the unit circle. Near a tongue's border, where two multipliers meet, it grows as the
+    true error does. The largest of two successive refinements counts: on a coarse mesh the error of a real
+    multiplier may change its sign between two of them. Rounding, which may be common to all of them, is told by what
+    changes of Φ as large as its own do to the multiplier.
+
+    Returns
+    -------
+    float
+        In the units of a multiplier [-].
+    """
+    judged = _Judged.of(system, method)
+    values = judged.values
+
+    def apart(others: ComplexArray) -> float:
+        distance = np.abs(values[:, None] - others[None, :])
+        forth, back = distance[np.abs(values).argmax()].min(), distance[:, np.abs(others).argmax()].min()
+        return float(max(forth, back))
+
+    return max(map(apart, judged.finer)) + max(judged.rounding, *map(apart, judged.disturbed))
+
+
+def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> Array:
+    """Estimated error of each multiplier, found as :func:`error_estimate` finds that of the largest.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    method : Method, optional
+        :func:`default_method` if left out.
+
+    Returns
+    -------
+    array, shape (2n,)
+        In the order of :func:`multipliers` [-]. A multiplier that is smaller is zero to all digits that are known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> slow_and_fast = PeriodicSystem(np.eye(1), [[50.0]], np.eye(1), (), 100.0)
+    >>> np.abs(multipliers(slow_and_fast)) > multiplier_errors(slow_and_fast)
+    array([ True, False])
+    """
+    chosen = default_method(system) if method is None else method
+    judged = _Judged.of(system, chosen)
+    values = judged.values[np.argsort(-np.abs(judged.values), kind="stable")]
+
+    def apart(others: ComplexArray) -> Array:
+        return np.asarray(np.abs(values[:, None] - others[None, :]).min(axis=1), dtype=float)
+
+    rounding = np.maximum(judged.rounding, np.max([apart(x) for x in judged.disturbed], axis=0))
+    return np.asarray(np.max([apart(x) for x in judged.finer], axis=0) + rounding, dtype=float)
+
+
+def rounding_shift(system: PeriodicSystem, method: Method) -> float:
+    """Part of :func:`error_estimate` that is due to rounding: how far it moves a multiplier that may be the largest."""
+    family = Family([system])
+    scaled = method.scaled_transition_matrices(family)[0]
+    rounding = rounding_error(scaled, family, method)
+    radii = np.abs(_eigenvalues(disturbed(scaled, rounding))).max(axis=-1)
+    return float(max(rounding, np.abs(radii - np.abs(_eigenvalues(scaled)).max()).max()))
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """Multipliers of a method, those of two refinements, and those of its Φ disturbed by as much as its rounding."""
+
+    values: ComplexArray
+    finer: list[ComplexArray]
+    disturbed: list[ComplexArray]
+    rounding: float
+
+    @classmethod
+    def of(cls, system: PeriodicSystem, method: Method) -> _Judged:
+        family = Family([system])
+        scaled = method.scaled_transition_matrices(family)[0]
+        finer, better = [], method
+        for _ in range(2):
+            better = better.refined()
+            finer.append(_eigenvalues(better.scaled_transition_matrices(family))[0])
+        rounding = rounding_error(scaled, family, method)
+        return cls(_eigenvalues(scaled), finer, list(_eigenvalues(disturbed(scaled, rounding))), rounding)
+
+
+def rounding_error(scaled: Array, family: Family, method: Method) -> float:
+    """Bound of the rounding in a scaled transition matrix (2n, 2n), as the norm of its error."""
+    places = 8.0 * scaled.shape[-1] + method.rounding(family)
+    return float(places * np.finfo(float).eps * max(1.0, np.linalg.norm(scaled, 2)))
+
+
+def disturbed(matrix: Array, size: float) -> Array:
+    """Return a matrix (d, d) with changes of a given norm, always the same ones, shape (4, d, d)."""
+    changes = np.random.default_rng(0).normal(size=(_CHANGES, *matrix.shape))
+    norms = np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True)
+    return np.asarray(matrix + size * changes / norms, dtype=float)
+
+
+def _eigenvalues(matrices: Array) -> ComplexArray:
+    if not np.isfinite(matrices).all():
+        raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
+    return np.asarray(np.linalg.eigvals(matrices), dtype=complex)

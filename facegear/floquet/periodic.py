@@ -1,0 +1,492 @@
+"""Periodic linear systems with rank-one loads (chapter 2, Eqs. 2-1 to 2-4 and 2-14).
+
+Every mesh load of a face-gear drive, transverse or torsional, is felt through one displacement
+u = φ(t)ᵀq and answers with one force, so that all systems of the text have the form
+
+    M q̈ + C q̇ + K q + Σ_i w_i(t) φ_i(t) [ m_i ü_i + c_i u̇_i + k_i u_i ] = 0,    u_i = φ_i(t)ᵀ q
+
+with constant M, C, K at a given speed. Time is measured by the fraction x = t / T0 of the period.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache, partial
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.floquet.piecewise import (
+    Array,
+    FourierSeries,
+    PiecewiseChebyshev,
+    Side,
+    fourier_series,
+    merge_breakpoints,
+    real_array,
+)
+from facegear.support.parameters import finite_array, integer_at_least, keep, nonnegative, one_of, positive
+
+Rate = Literal["frozen", "total"]
+
+# Stiffness, damping and loads along a rigid-body motion, over their largest.
+_RIGID = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLoad:
+    """One rank-one load: force φ w [m ü + c u̇ + k u] on the displacement u = φᵀq.
+
+    Parameters
+    ----------
+    shape : PiecewiseChebyshev
+        Shape vector φ, n components.
+    stiffness, damping, mass : float
+        k [N/m], c [N s/m], m [kg] (or rotational units, as the coordinates have it), not negative.
+    rate : {"frozen", "total"}
+        "frozen": u̇ = φᵀq̇, ü = φᵀq̈ (the transverse chapters). "total": the derivative goes through the
+        shape vector, u̇ = φᵀq̇ + φ̇ᵀq, ü = φᵀq̈ + 2φ̇ᵀq̇ + φ̈ᵀq (chapter 7). A jump of φ then means that contact
+        is made or lost and gives no impulse; a jump of the slope φ̇ gives the mass a kick
+        (:meth:`PeriodicSystem.velocity_kicks`).
+    weight : PiecewiseChebyshev, optional
+        Scalar periodic factor w of the force, for loads whose strength varies (Mathieu, Hill, Meissner).
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the parameter and what would be valid.
+    """
+
+    shape: PiecewiseChebyshev
+    stiffness: float = 0.0
+    damping: float = 0.0
+    mass: float = 0.0
+    rate: Rate = "frozen"
+    weight: PiecewiseChebyshev | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.shape, PiecewiseChebyshev):
+            raise TypeError(f"shape must be a PiecewiseChebyshev; got {type(self.shape).__name__}")
+        for name in ("stiffness", "damping", "mass"):
+            value = getattr(self, name)
+            keep(self, **{name: nonnegative(name, value)})
+        one_of("rate", self.rate, ("frozen", "total"))
+        if self.weight is not None and self.weight.components != 1:
+            raise ValueError(f"weight must have one component; got {self.weight.components}")
+        if self.weight is not None and self.mass > 0.0:
+            raise ValueError(f"mass must be 0 for a load with a weight; got {self.mass!r}")
+        if self.rate == "total" and self.mass > 0.0:
+            jump = float(np.abs(self.shape.jumps()).max())
+            if jump > 1e-9 * self.shape.largest:
+                raise ValueError(
+                    f"mass must be 0 where a shape vector with total rate jumps; got mass {self.mass!r} "
+                    f"and a jump of {jump:.3g}: a mass cannot be moved by a finite distance in no time"
+                )
+
+    @property
+    def slope(self) -> PiecewiseChebyshev:
+        """dφ/dx, x the fraction of the period."""
+        return self.shape.derivative(1)
+
+    @property
+    def curvature(self) -> PiecewiseChebyshev:
+        """d²φ/dx², x the fraction of the period, impulses at slope jumps left out."""
+        return self.shape.derivative(2)
+
+    @cached_property
+    def breakpoints(self) -> Array:
+        """Instants where φ or w is not smooth, fractions of the period, ascending."""
+        if self.weight is None:
+            return self.shape.breakpoints
+        return merge_breakpoints([self.shape.breakpoints, self.weight.breakpoints])
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSystem:
+    """M q̈ + C q̇ + K q + Σ (rank-one loads) = 0 over one period T0 (2-1, 2-2).
+
+    Parameters
+    ----------
+    mass : array_like, shape (n, n)
+        M, symmetric positive definite, constant part.
+    damping, stiffness : array_like, shape (n, n)
+        C and K, constant parts; gyroscopic C and non-symmetric K are allowed.
+    loads : sequence of ContactLoad
+        The periodic loads, shape vectors with n components.
+    period : float
+        T0 [s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If shapes do not match, entries are not finite, the mass is not symmetric positive definite, or the
+        period is not positive.
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    loads: tuple[ContactLoad, ...]
+    period: float
+
+    def __post_init__(self) -> None:
+        size = np.shape(self.mass)[0] if np.ndim(self.mass) else 0
+        for name in ("mass", "damping", "stiffness"):
+            matrix = real_array(getattr(self, name), name, 2)
+            if matrix.shape != (size, size) or size == 0:
+                raise ValueError(f"{name} must be square and as large as mass; got shape {matrix.shape}")
+            keep(self, **{name: matrix})
+        if np.abs(self.mass - self.mass.T).max() > 1e-12 * np.abs(self.mass).max():
+            raise ValueError("mass must be symmetric; got a non-symmetric matrix")
+        try:
+            np.linalg.cholesky(self.mass)
+        except np.linalg.LinAlgError:
+            raise ValueError(
+                "mass must be positive definite; got a matrix with a non-positive eigenvalue"
+            ) from None
+        keep(self, loads=tuple(self.loads))
+        for number, load in enumerate(self.loads):
+            if not isinstance(load, ContactLoad):
+                raise TypeError(f"loads[{number}] must be a ContactLoad; got {type(load).__name__}")
+            if load.shape.components != size:
+                raise ValueError(
+                    f"loads[{number}].shape must have {size} components, one a coordinate; "
+                    f"got {load.shape.components}"
+                )
+        keep(self, period=positive("period", self.period, "s"))
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n; the state has 2n."""
+        return int(self.mass.shape[0])
+
+    @cached_property
+    def breakpoints(self) -> Array:
+        """Union of the loads' breakpoints with 0, fractions of the period, ascending."""
+        return merge_breakpoints([np.zeros(1), *(load.breakpoints for load in self.loads)])
+
+    def mass_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """Assembled M(t), shape (..., n, n)."""
+        return self._assemble(fraction, side)[0]
+
+    def damping_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """Assembled C(t), shape (..., n, n)."""
+        return self._assemble(fraction, side)[1]
+
+    def stiffness_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """Assembled K(t), shape (..., n, n); the impulses of φ̈ at slope jumps are :meth:`velocity_kicks`."""
+        return self._assemble(fraction, side)[2]
+
+    def state_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """A(t) of Ẋ = A X, X = (q, q̇), Eq. (2-4), shape (..., 2n, 2n)."""
+        mass, damping, stiffness = self._assemble(fraction, side)
+        right = np.linalg.solve(mass, np.concatenate([stiffness, damping], axis=-1))
+        state = np.zeros((*mass.shape[:-2], 2 * self.size, 2 * self.size))
+        state[..., : self.size, self.size :] = np.eye(self.size)
+        state[..., self.size :, :] = -right
+        return state
+
+    def _assemble(self, fraction: ArrayLike, side: Side) -> tuple[Array, Array, Array]:
+        x = np.asarray(fraction, dtype=float)
+        mass, damping, stiffness = (
+            np.broadcast_to(matrix, (*x.shape, self.size, self.size)).copy()
+            for matrix in (self.mass, self.damping, self.stiffness)
+        )
+        for load in self.loads:
+            phi = load.shape(x, side)
+            force = phi if load.weight is None else phi * load.weight(x, side)
+            mass += load.mass * force[..., :, None] * phi[..., None, :]
+            damping += load.damping * force[..., :, None] * phi[..., None, :]
+            stiffness += load.stiffness * force[..., :, None] * phi[..., None, :]
+            if load.rate == "total":
+                rate = load.slope(x, side) / self.period
+                stiffness += load.damping * force[..., :, None] * rate[..., None, :]
+                if load.mass > 0.0:
+                    second = load.curvature(x, side) / self.period**2
+                    damping += 2.0 * load.mass * force[..., :, None] * rate[..., None, :]
+                    stiffness += load.mass * force[..., :, None] * second[..., None, :]
+        return mass, damping, stiffness
+
+    def impulses(self) -> list[tuple[float, Array]]:
+        """Impulsive part of K(t): Σ m φ Δφ̇ᵀ at each slope jump of a load with mass and total rate.
+
+        Returns
+        -------
+        list of (fraction, matrix of shape (n, n))
+            Ascending fractions; empty if there are none.
+        """
+        found: dict[float, Array] = {}
+        for load in self.loads:
+            if load.rate != "total" or load.mass == 0.0:
+                continue
+            slope_jumps = load.slope.jumps() / self.period
+            largest = load.slope.largest / self.period
+            for breakpoint_, jump in zip(load.shape.breakpoints, slope_jumps, strict=True):
+                # Below this it is rounding of the fit, as where a smooth function crosses the period's end.
+                if np.abs(jump).max() <= 1e-11 * largest:
+                    continue
+                nearest = self.breakpoints[np.argmin(np.abs(self.breakpoints - breakpoint_))]
+                at = float(nearest)
+                matrix = load.mass * np.outer(load.shape(breakpoint_), jump)
+                found[at] = found[at] + matrix if at in found else matrix
+        return sorted(found.items(), key=lambda item: item[0])
+
+    def velocity_kicks(self) -> list[tuple[float, Array]]:
+        """Jumps of the velocity where a contact mass with total rate meets a slope jump: q̇⁺ = q̇⁻ + P q.
+
+        P = −M(t)⁻¹ Σ m φ Δφ̇ᵀ, which for M = I and one load is −φ m/(1 + m φᵀφ) Δφ̇ᵀ.
+
+        Returns
+        -------
+        list of (fraction, P of shape (n, n))
+            Ascending fractions; empty if there are none.
+        """
+        kicks: list[tuple[float, Array]] = []
+        for at, matrix in self.impulses():
+            kick: Array = np.asarray(-np.linalg.solve(self.mass_matrix(at), matrix), dtype=float)
+            kicks.append((at, kick))
+        return kicks
+
+    def fourier(self, order: int) -> tuple[FourierSeries, FourierSeries, FourierSeries]:
+        """Fourier series (2-14) of the assembled M(t), C(t), K(t), impulses of φ̈ included in K.
+
+        Parameters
+        ----------
+        order : int
+            Highest harmonic S of 2π/T0.
+
+        Returns
+        -------
+        mass, damping, stiffness : FourierSeries
+            Constant parts are in the means. :func:`fourier_series` expands any other function of these
+            matrices, as M(t)⁻¹K(t), in the same way.
+        """
+        order = integer_at_least("order", order, 1)
+        none = np.zeros((order, self.size, self.size))
+        mass, damping, stiffness = (
+            FourierSeries(constant, none, none) for constant in (self.mass, self.damping, self.stiffness)
+        )
+        for load in self.loads:
+            still, moving, curving = (
+                partial(_dyad_series, load.shape, load.weight, derivative, order) for derivative in range(3)
+            )
+            mass = mass.plus(load.mass, still())
+            damping = damping.plus(load.damping, still())
+            stiffness = stiffness.plus(load.stiffness, still())
+            if load.rate == "total":
+                stiffness = stiffness.plus(load.damping / self.period, moving())
+                if load.mass > 0.0:
+                    damping = damping.plus(2.0 * load.mass / self.period, moving())
+                    stiffness = stiffness.plus(load.mass / self.period**2, curving())
+        for at, matrix in self.impulses():
+            angle = 2.0 * np.pi * at * (1 + np.arange(order))[:, None, None]
+            waves = FourierSeries(matrix, 2.0 * np.cos(angle) * matrix, 2.0 * np.sin(angle) * matrix)
+            stiffness = stiffness.plus(1.0 / self.period, waves)
+        return mass, damping, stiffness
+
+    def replace_loads(
+        self,
+        *,
+        mass: ArrayLike | None = None,
+        damping: ArrayLike | None = None,
+        stiffness: ArrayLike | None = None,
+    ) -> PeriodicSystem:
+        """Return the system with other load parameters, each one number for all loads or one a load."""
+        masses = self._per_load(mass, "mass")
+        dampings = self._per_load(damping, "damping")
+        stiffnesses = self._per_load(stiffness, "stiffness")
+        loads = tuple(
+            replace(load, mass=m, damping=c, stiffness=k)
+            for load, m, c, k in zip(self.loads, masses, dampings, stiffnesses, strict=True)
+        )
+        return replace(self, loads=loads)
+
+    def _per_load(self, values: ArrayLike | None, name: str) -> list[float]:
+        """Return one value a load: those given, or else the present ones."""
+        if values is None:
+            return [float(getattr(load, name)) for load in self.loads]
+        array = finite_array(name, values)
+        if array.shape not in ((), (len(self.loads),)):
+            raise ValueError(
+                f"{name} must be one number or {len(self.loads)}, one a load; got shape {array.shape}"
+            )
+        return [float(value) for value in np.broadcast_to(array, (len(self.loads),))]
+
+    def shift(self, phase: float) -> PeriodicSystem:
+        """Return the system with the origin of time moved by `phase` of a period; multipliers stay."""
+        loads = tuple(
+            replace(
+                load,
+                shape=load.shape.shift(phase),
+                weight=None if load.weight is None else load.weight.shift(phase),
+            )
+            for load in self.loads
+        )
+        return replace(self, loads=loads)
+
+
+def rigid_motions(system: PeriodicSystem) -> Array:
+    """Rigid-body motions of a system: displacements r that meet neither spring nor damper nor load.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+
+    Returns
+    -------
+    array, shape (n, k)
+        r with K r = 0, C r = 0 and φ(t)ᵀr = 0 for each load, orthonormal with the mass as weight; k = 0 for a system
+        that hangs on something.
+    """
+    projection, root = _rigid_projection(system)
+    count = round(float(np.trace(projection)))
+    return np.asarray(root @ _columns(projection, count), dtype=float)
+
+
+def without_rigid_motion(system: PeriodicSystem) -> PeriodicSystem:
+    """Return what is left of a system when its rigid-body motions are taken out.
+
+    With q = B y + r s, BᵀM r = 0, the equations of y hold no s, because K r, C r and φᵀr vanish: the multipliers of y
+    are those of the system less two for each r, which are 1 with one eigenvector, since r s may drift. That double
+    multiplier is known to the square root of rounding only, 1e-8, whatever the method. Exact for any system with
+    constant mass M and loads without a mass of their own along r.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+
+    Returns
+    -------
+    PeriodicSystem
+        Unit mass and n − k coordinates; the system itself if it has no such motion.
+
+    Raises
+    ------
+    ValueError
+        If nothing is left: no spring, damper or load at all.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> spring = ContactLoad(PiecewiseChebyshev.constant([1.0, -1.0]), stiffness=3.0)
+    >>> pair = PeriodicSystem(np.diag([1.0, 2.0]), np.zeros((2, 2)), np.zeros((2, 2)), (spring,), 1.0)
+    >>> without_rigid_motion(pair).stiffness_matrix(0.0).round(12)
+    array([[4.5]])
+    """
+    projection, root = _rigid_projection(system)
+    count = round(float(np.trace(projection)))
+    if count == 0:
+        return system
+    if count == system.size:
+        raise ValueError("system must have a spring, a damper or a load; got rigid-body motions only")
+    basis = root @ _columns(np.eye(system.size) - projection, system.size - count)
+    loads = tuple(
+        replace(load, shape=PiecewiseChebyshev(load.shape.breakpoints, load.shape.coefficients @ basis))
+        for load in system.loads
+    )
+    damping, stiffness = (basis.T @ matrix @ basis for matrix in (system.damping, system.stiffness))
+    return replace(system, mass=np.eye(basis.shape[1]), damping=damping, stiffness=stiffness, loads=loads)
+
+
+def _rigid_projection(system: PeriodicSystem) -> tuple[Array, Array]:
+    """Projection on the rigid-body motions in coordinates Lᵀq, M = L Lᵀ, and L⁻ᵀ, which leads back to q."""
+    root = np.linalg.inv(np.linalg.cholesky(system.mass)).T
+    rows = [root.T @ system.stiffness @ root, root.T @ system.damping @ root]
+    rows += [load.shape.coefficients.reshape(-1, system.size) @ root for load in system.loads if _acts(load)]
+    sizes = [float(np.abs(row).max()) for row in rows]
+    stacked = [row / size for row, size in zip(rows, sizes, strict=True) if size > 0.0]
+    if not stacked:
+        return np.eye(system.size), root
+    _, values, vectors = np.linalg.svd(np.concatenate(stacked), full_matrices=True)
+    values = np.append(values, np.zeros(system.size - values.size))
+    null = vectors[values <= _RIGID * values[0]]
+    return null.T @ null, root
+
+
+def _acts(load: ContactLoad) -> bool:
+    return load.stiffness > 0.0 or load.damping > 0.0 or load.mass > 0.0
+
+
+def _columns(projection: Array, count: int) -> Array:
+    """Orthonormal columns that span what a projection leaves, shape (n, count).
+
+    They are taken from its own columns, the longest first, so that they change as smoothly as it does.
+    """
+    rest, found = projection.copy(), np.empty((len(projection), count))
+    for number in range(count):
+        # Rounding must not decide between columns of one length.
+        lengths = np.linalg.norm(rest, axis=0).round(6)
+        column = rest[:, int(lengths.argmax())]
+        found[:, number] = column / np.linalg.norm(column)
+        rest = rest - np.outer(found[:, number], found[:, number] @ rest)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class LoadColumn:
+    """Load parameters along a column of a map: V values, p loads.
+
+    Attributes
+    ----------
+    mass, damping, stiffness : array, shape (V, p)
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "damping", "stiffness"):
+            values = np.asarray(getattr(self, name), dtype=np.float64)
+            keep(self, **{name: values})
+            if values.shape != self.mass.shape or values.ndim != 2:
+                raise ValueError(f"{name} must have shape (values, loads) as the others; got {values.shape}")
+            if not np.isfinite(values).all() or (values < 0.0).any():
+                raise ValueError(f"{name} must be finite and >= 0; got {values.min()!r} as smallest value")
+
+    @classmethod
+    def of(cls, system: PeriodicSystem) -> LoadColumn:
+        """Return the one value of each parameter that a system has."""
+        return cls(
+            *(
+                np.array([[getattr(load, name) for load in system.loads]])
+                for name in ("mass", "damping", "stiffness")
+            )
+        )
+
+    def __len__(self) -> int:
+        return int(self.mass.shape[0])
+
+    def stacked(self) -> Array:
+        """All parameters, shape (V, 3 p)."""
+        return np.concatenate([self.mass, self.damping, self.stiffness], axis=1)
+
+    def extremes(self) -> LoadColumn:
+        """Rows that hold the smallest and the largest of each parameter, and the middle one."""
+        values = self.stacked()
+        rows = np.unique(np.concatenate([values.argmin(axis=0), values.argmax(axis=0), [len(self) // 2]]))
+        return LoadColumn(self.mass[rows], self.damping[rows], self.stiffness[rows])
+
+    @classmethod
+    def from_stacked(cls, values: Array) -> LoadColumn:
+        """Undo :meth:`stacked`; rounding below zero is taken off."""
+        mass, damping, stiffness = np.split(np.maximum(values, 0.0), 3, axis=1)
+        return cls(mass, damping, stiffness)
+
+
+@lru_cache(maxsize=256)
+def _dyad_series(
+    shape: PiecewiseChebyshev, weight: PiecewiseChebyshev | None, derivative: int, order: int
+) -> FourierSeries:
+    """Fourier series of w φ (dʳφ/dxʳ)ᵀ, which depend neither on speed nor on load parameters."""
+    other = shape.derivative(derivative)
+    breakpoints = (
+        shape.breakpoints if weight is None else merge_breakpoints([shape.breakpoints, weight.breakpoints])
+    )
+
+    def dyads(fraction: Array) -> Array:
+        force = shape(fraction) if weight is None else shape(fraction) * weight(fraction)
+        return np.asarray(force[:, :, None] * other(fraction)[:, None, :])
+
+    return fourier_series(dyads, breakpoints, order)

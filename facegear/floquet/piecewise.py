@@ -1,0 +1,372 @@
+"""Piecewise smooth periodic functions: Chebyshev series between breakpoints, and their Fourier series.
+
+The position of a mesh contact is smooth except where a tooth pair enters or leaves mesh and where the end of
+a contact line changes its bounding curve. Here such functions are held exactly: time is measured by the
+fraction x = t / T0 of the period, and each smooth piece has its own Chebyshev series.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Literal
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.support.parameters import finite, finite_array, integer_at_least, keep
+
+Array = NDArray[np.float64]
+Side = Literal["left", "right"]
+
+#: Two breakpoints closer than this fraction of the period are one.
+SAME_INSTANT = 1e-12
+
+
+def chebyshev_points(count: int) -> Array:
+    """Chebyshev points of the first kind on [-1, 1], ascending, shape (count,)."""
+    return -np.cos(np.pi * (np.arange(count) + 0.5) / count)
+
+
+def chebyshev_coefficients(values: Array) -> Array:
+    """Chebyshev coefficients of the interpolant through `values` at :func:`chebyshev_points`.
+
+    Parameters
+    ----------
+    values : array, shape (count, ...)
+        Samples along the first axis.
+
+    Returns
+    -------
+    array, shape (count, ...)
+    """
+    count = values.shape[0]
+    # x_j = -cos(θ_j), so T_k(x_j) = (-1)^k cos(k θ_j).
+    theta = np.pi * (np.arange(count) + 0.5) / count
+    order = np.arange(count)
+    transform = (-1.0) ** order[:, None] * np.cos(np.outer(order, theta)) * (2.0 / count)
+    transform[0] /= 2.0
+    return np.tensordot(transform, values, axes=(1, 0))
+
+
+def _chebyshev_basis(x: Array, degree: int) -> Array:
+    """T_0 ... T_degree at x in [-1, 1], shape (len(x), degree + 1)."""
+    return np.cos(np.arange(degree + 1) * np.arccos(np.clip(x, -1.0, 1.0))[:, None])
+
+
+def wrap(fraction: Array) -> Array:
+    """Fraction of the period in [0, 1); values within rounding of 1 become 0."""
+    wrapped = np.mod(fraction, 1.0)
+    return np.where(wrapped > 1.0 - SAME_INSTANT, 0.0, wrapped)
+
+
+@dataclass(frozen=True, eq=False)
+class PiecewiseChebyshev:
+    """Periodic vector function of the fraction of the period, a Chebyshev series on each smooth piece.
+
+    Piece p runs from ``breakpoints[p]`` to ``breakpoints[p + 1]``, the last one across the end of the
+    period to ``breakpoints[0] + 1``.
+
+    Parameters
+    ----------
+    breakpoints : array, shape (pieces,)
+        Ascending, inside [0, 1).
+    coefficients : array, shape (pieces, degree + 1, components)
+        Chebyshev coefficients on each piece, mapped to [-1, 1].
+
+    Raises
+    ------
+    ValueError
+        If breakpoints are not ascending inside [0, 1), or the shapes do not match, or an entry is not finite.
+    """
+
+    breakpoints: Array
+    coefficients: Array
+
+    def __post_init__(self) -> None:
+        breakpoints = real_array(self.breakpoints, "breakpoints", 1)
+        coefficients = real_array(self.coefficients, "coefficients", 3)
+        _check_breakpoints(breakpoints)
+        if coefficients.shape[0] != breakpoints.size or 0 in coefficients.shape:
+            raise ValueError(
+                f"coefficients must have shape ({breakpoints.size}, degree + 1, components), one series "
+                f"for each of the {breakpoints.size} breakpoints; got shape {coefficients.shape}"
+            )
+        keep(self, breakpoints=breakpoints, coefficients=coefficients)
+
+    @classmethod
+    def fit(
+        cls,
+        function: Callable[[Array, int], ArrayLike],
+        breakpoints: ArrayLike,
+        *,
+        tolerance: ArrayLike = 1e-13,
+        max_degree: int = 256,
+    ) -> PiecewiseChebyshev:
+        """Fit a function that is smooth between breakpoints, raising the degree until the tail is negligible.
+
+        Parameters
+        ----------
+        function : callable
+            ``function(fraction, piece)`` with `fraction` of shape (m,) strictly inside piece number `piece`
+            returns shape (m,) or (m, components). On the last piece fractions run past 1, up to
+            ``breakpoints[0] + 1``.
+        breakpoints : array_like, shape (pieces,)
+            Ascending fractions inside [0, 1). A function smooth over the whole period takes ``[0.0]``.
+        tolerance : float or array_like, shape (pieces,)
+            Size of the last coefficients relative to the largest value of the function [-].
+        max_degree : int
+            Highest degree tried.
+
+        Raises
+        ------
+        ValueError
+            If the tail stays above the tolerance: the function has a jump or a kink inside a piece.
+        """
+        edges = real_array(breakpoints, "breakpoints", 1)
+        _check_breakpoints(edges)
+        ends = np.append(edges[1:], edges[0] + 1.0)
+
+        def sample(piece: int, count: int) -> Array:
+            middle, half = (ends[piece] + edges[piece]) / 2.0, (ends[piece] - edges[piece]) / 2.0
+            values = np.asarray(function(middle + half * chebyshev_points(count), piece), dtype=float)
+            values = values[:, None] if values.ndim == 1 else values
+            if values.ndim != 2 or values.shape[0] != count:
+                raise ValueError(
+                    f"function must return shape ({count},) or ({count}, components) for {count} fractions; "
+                    f"got shape {values.shape} on piece {piece}"
+                )
+            if not np.isfinite(values).all():
+                raise ValueError(f"function must be finite on piece {piece}; got a non-finite value")
+            return values
+
+        allowed = np.broadcast_to(real_array(np.atleast_1d(tolerance), "tolerance", 1), edges.shape)
+        scale = max(float(np.abs(sample(piece, 9)).max()) for piece in range(edges.size))
+        series = []
+        for piece in range(edges.size):
+            count = 9
+            while True:
+                coefficients = chebyshev_coefficients(sample(piece, count))
+                scale = max(scale, float(np.abs(coefficients).max()))
+                sizes = np.abs(coefficients).max(axis=1)
+                # Three coefficients, because an even or odd function has every second one zero.
+                if sizes[-3:].max() <= allowed[piece] * scale:
+                    break
+                if count > max_degree:
+                    raise ValueError(
+                        f"function is not smooth on piece {piece} ({edges[piece]:.6g} to {ends[piece]:.6g} "
+                        f"of the period): at degree {count - 1} the last Chebyshev coefficients are "
+                        f"{sizes[-3:].max() / scale:.2g} of the largest value, above {allowed[piece]:.2g}; "
+                        "add the breakpoint of the jump or kink inside it"
+                    )
+                count = 2 * count - 1
+            kept = int(np.flatnonzero(sizes > allowed[piece] * scale / 10.0).max(initial=0)) + 1
+            series.append(coefficients[:kept])
+        length = max(part.shape[0] for part in series)
+        padded = np.stack([np.pad(part, ((0, length - part.shape[0]), (0, 0))) for part in series])
+        return cls(edges, padded)
+
+    @classmethod
+    def constant(cls, values: ArrayLike) -> PiecewiseChebyshev:
+        """Constant vector `values`, shape (components,)."""
+        return cls(np.zeros(1), np.atleast_1d(np.asarray(values, dtype=float))[None, None, :])
+
+    @property
+    def components(self) -> int:
+        """Number of components of the vector."""
+        return int(self.coefficients.shape[2])
+
+    @property
+    def degree(self) -> int:
+        """Degree of the Chebyshev series."""
+        return int(self.coefficients.shape[1]) - 1
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Lengths of the pieces as fractions of the period, shape (pieces,)."""
+        return np.diff(np.append(self.breakpoints, self.breakpoints[0] + 1.0))
+
+    @cached_property
+    def largest(self) -> float:
+        """A bound on the largest absolute value of any component."""
+        return float(np.abs(self.coefficients).sum(axis=1).max())
+
+    def __call__(self, fraction: ArrayLike, side: Side = "right") -> Array:
+        """Value at fractions of the period.
+
+        Parameters
+        ----------
+        fraction : array_like, shape (...)
+            Any real numbers; the function is periodic [-].
+        side : {"right", "left"}
+            Which limit to take at a breakpoint.
+
+        Returns
+        -------
+        array, shape (..., components)
+        """
+        asked = np.asarray(fraction, dtype=float)
+        wrapped = wrap(asked.ravel())
+        nudge = SAME_INSTANT if side == "right" else -SAME_INSTANT
+        piece = np.searchsorted(self.breakpoints, wrapped + nudge, side="right") - 1
+        values = np.empty((wrapped.size, self.components))
+        for p in np.unique(piece):
+            chosen = piece == p
+            # Before the first breakpoint one is still on the last piece of the period before (p = -1).
+            offset = wrapped[chosen] - self.breakpoints[p]
+            offset = offset + 1.0 if p < 0 else offset
+            local = 2.0 * offset / self.lengths[p] - 1.0
+            values[chosen] = _chebyshev_basis(local, self.degree) @ self.coefficients[p]
+        return values.reshape(*asked.shape, self.components)
+
+    def derivative(self, order: int = 1) -> PiecewiseChebyshev:
+        """Exact derivative with respect to the fraction of the period, piece by piece (jumps left out)."""
+        function = self
+        for _ in range(order):
+            function = function._slope
+        return function
+
+    @cached_property
+    def _slope(self) -> PiecewiseChebyshev:
+        if self.degree == 0:
+            return PiecewiseChebyshev(self.breakpoints, np.zeros_like(self.coefficients))
+        coefficients = chebyshev.chebder(self.coefficients, axis=1) * (2.0 / self.lengths)[:, None, None]
+        return PiecewiseChebyshev(self.breakpoints, coefficients)
+
+    def shift(self, phase: float) -> PiecewiseChebyshev:
+        """Return x ↦ f(x + phase), Eq. (5-2): ahead by `phase` of a period."""
+        phase = finite("phase", phase)
+        if phase == 0.0:
+            return self
+        moved = wrap(self.breakpoints - phase)
+        order = np.argsort(moved)
+        return PiecewiseChebyshev(moved[order], self.coefficients[order])
+
+    def jumps(self) -> Array:
+        """Right minus left limit at each breakpoint, shape (pieces, components)."""
+        signs = (-1.0) ** np.arange(self.degree + 1)
+        right: Array = np.einsum("d,pdn->pn", signs, self.coefficients)
+        left: Array = np.roll(self.coefficients.sum(axis=1), 1, axis=0)
+        return right - left
+
+
+@dataclass(frozen=True, eq=False)
+class FourierSeries:
+    """Periodic matrix F(x) = mean + Σ_s cosine[s-1] cos 2πsx + sine[s-1] sin 2πsx, s = 1 ... order.
+
+    Attributes
+    ----------
+    mean : array, shape (rows, columns)
+    cosine, sine : array, shape (order, rows, columns)
+    """
+
+    mean: Array
+    cosine: Array
+    sine: Array
+
+    def __call__(self, fraction: ArrayLike) -> Array:
+        """Value of the truncated series, shape (..., rows, columns)."""
+        angle = (
+            2.0
+            * np.pi
+            * np.multiply.outer(np.asarray(fraction, dtype=float), 1 + np.arange(len(self.cosine)))
+        )
+        return (
+            self.mean
+            + np.tensordot(np.cos(angle), self.cosine, axes=1)
+            + np.tensordot(np.sin(angle), self.sine, axes=1)
+        )
+
+    def plus(self, factor: float, other: FourierSeries) -> FourierSeries:
+        """Return this series and `factor` times another of the same order."""
+        return FourierSeries(
+            self.mean + factor * other.mean,
+            self.cosine + factor * other.cosine,
+            self.sine + factor * other.sine,
+        )
+
+
+@lru_cache(maxsize=64)
+def _gauss_legendre(nodes: int) -> tuple[Array, Array]:
+    """Nodes and weights on [-1, 1]."""
+    x, weights = np.polynomial.legendre.leggauss(nodes)
+    return x, weights
+
+
+def fourier_series(
+    function: Callable[[Array], Array], breakpoints: ArrayLike, order: int, *, tolerance: float = 1e-13
+) -> FourierSeries:
+    """Fourier coefficients (2-14) of a periodic matrix function that is smooth between breakpoints.
+
+    Gauss-Legendre quadrature on each piece, the number of nodes raised until two successive results agree, so
+    jumps and kinks cost no accuracy.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(fractions)``, shape (m,) -> (m, rows, columns).
+    breakpoints : array_like
+        Fractions in [0, 1) where the function is not smooth.
+    order : int
+        Highest harmonic.
+    tolerance : float
+        Largest change of a coefficient between the last two node counts, relative to the largest entry.
+
+    Raises
+    ------
+    ValueError
+        If `order` is not a whole number >= 1, or the quadrature does not settle with 600 nodes a piece.
+    """
+    order = integer_at_least("order", order, 1)
+    edges = merge_breakpoints([real_array(breakpoints, "breakpoints", 1)])
+    ends = np.append(edges[1:], edges[0] + 1.0)
+    harmonics = np.arange(order + 1)
+
+    def integrate(nodes: int) -> NDArray[np.complex128]:
+        x, w = _gauss_legendre(nodes)
+        half, middle = (ends - edges) / 2.0, (ends + edges) / 2.0
+        points = (middle[:, None] + half[:, None] * x).ravel()
+        kernel = np.exp(2j * np.pi * np.outer(harmonics, points)) * (half[:, None] * w).ravel()
+        return np.tensordot(kernel, function(points), axes=1)
+
+    # e^{i 2π s x} over a piece of length L adds degree π s L besides that of the function.
+    nodes = 24 + int(np.ceil(np.pi * order * (ends - edges).max() / 2.0))
+    coarse = integrate(nodes)
+    while True:
+        nodes = nodes * 3 // 2
+        fine = integrate(nodes)
+        scale = float(np.abs(fine).max())
+        change = float(np.abs(fine - coarse).max())
+        if change <= tolerance * max(scale, np.finfo(float).tiny):
+            break
+        if nodes > 600 + 4 * order:
+            raise ValueError(
+                f"function is not smooth between the breakpoints: its Fourier integrals still change by "
+                f"{change / scale:.2g} with {nodes} nodes a piece"
+            )
+        coarse = fine
+    return FourierSeries(mean=fine[0].real.copy(), cosine=2.0 * fine[1:].real, sine=2.0 * fine[1:].imag)
+
+
+def merge_breakpoints(parts: Sequence[Array]) -> Array:
+    """Union of sets of breakpoints in [0, 1), ascending; those within rounding of one another are one."""
+    points = np.sort(np.concatenate([wrap(np.asarray(part, dtype=float)) for part in parts]))
+    return points[np.diff(points, prepend=-1.0) > SAME_INSTANT]
+
+
+def _check_breakpoints(breakpoints: Array) -> None:
+    if breakpoints.size == 0 or breakpoints[0] < 0.0 or breakpoints[-1] >= 1.0:
+        raise ValueError(f"breakpoints must lie inside [0, 1), at least one; got {breakpoints.tolist()}")
+    if (np.diff(breakpoints) <= SAME_INSTANT).any():
+        raise ValueError(f"breakpoints must ascend and differ; got {breakpoints.tolist()}")
+
+
+def real_array(values: ArrayLike, name: str, dimensions: int) -> Array:
+    """Return a read-only float copy, checked for its number of dimensions and for finite entries."""
+    array = finite_array(name, values)
+    if array.ndim != dimensions:
+        raise ValueError(f"{name} must have {dimensions} dimensions; got shape {array.shape}")
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,232 @@
+"""Products of matrix exponentials over sub-intervals, batched over families of periodic systems."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from facegear.floquet.collocation import chain
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.piecewise import Array, PiecewiseChebyshev
+
+# Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB, and small stacks in cache.
+_STACK_ENTRIES = 500_000
+
+StateMatrices = Callable[[Array], Array]
+Exponents = Callable[[Array, Array, StateMatrices], Array]
+
+
+def aligned_edges(breakpoints: Array, sub_intervals: int, factor: int = 1) -> Array:
+    """Return ends of sub-intervals, ascending from 0 to 1, every breakpoint (0 among them) included.
+
+    Each piece gets its share of `sub_intervals`, rounded up, each of these cut in `factor`.
+    """
+    ends = np.append(breakpoints[1:], 1.0)
+    parts = [
+        np.linspace(start, end, factor * int(np.ceil((end - start) * sub_intervals)), endpoint=False)
+        for start, end in zip(breakpoints, ends, strict=True)
+    ]
+    return np.append(np.concatenate(parts), 1.0)
+
+
+def midpoint(start: Array, length: Array, state: StateMatrices) -> Array:
+    """Exponent h A(midpoint) of each sub-interval (2-9)."""
+    return np.asarray(state(start + length / 2.0) * length[:, None, None], dtype=float)
+
+
+def gauss_magnus(start: Array, length: Array, state: StateMatrices) -> Array:
+    """Fourth-order Magnus exponent h (A₁+A₂)/2 − √3/12 h² [A₁, A₂] of each sub-interval, two Gauss nodes."""
+    offset = np.sqrt(3.0) / 6.0
+    first = state(start + (0.5 - offset) * length) * length[:, None, None]
+    second = state(start + (0.5 + offset) * length) * length[:, None, None]
+    commutator = first @ second - second @ first
+    return np.asarray((first + second) / 2.0 - (np.sqrt(3.0) / 12.0) * commutator, dtype=float)
+
+
+def exponentials(matrices: Array) -> Array:
+    """Matrix exponentials of a stack of small matrices, shape (..., d, d).
+
+    Taylor polynomial of degree 12 in five products (Paterson and Stockmeyer), scaling and squaring. For the tens of
+    thousands of small matrices of a map several times faster than scipy.linalg.expm, which the tests compare it
+    with.
+    """
+    norm = float(np.abs(matrices).sum(axis=-2).max())
+    # Below 0.5 the first term left out, norm¹³/13!, is 2e-14.
+    squarings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.5))))
+    first = matrices / 2.0**squarings
+    second = first @ first
+    third = second @ first
+    fourth = second @ second
+    identity = np.eye(matrices.shape[-1])
+    inverse_factorial = 1.0 / np.cumprod(np.concatenate([[1.0], np.arange(1.0, 13.0)]))
+
+    def cubic(order: int) -> Array:
+        c = inverse_factorial[order : order + 4]
+        return np.asarray(c[0] * identity + c[1] * first + c[2] * second + c[3] * third, dtype=float)
+
+    result = cubic(8) + inverse_factorial[12] * fourth
+    result = cubic(4) + result @ fourth
+    result = cubic(0) + result @ fourth
+    for _ in range(squarings):
+        result = result @ result
+    return np.asarray(result, dtype=float)
+
+
+class Family:
+    """Systems with common size and breakpoints, stacked for batched linear algebra, in scaled coordinates.
+
+    Parameters
+    ----------
+    systems : sequence of PeriodicSystem
+        V systems; periods, constant matrices and loads may differ.
+
+    Attributes
+    ----------
+    scale : array, shape (2n, 2n)
+        S of the scaled state S X, one for the family, so that matrices can be interpolated from member to member.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or sizes, numbers of loads or breakpoints differ.
+    """
+
+    def __init__(self, systems: Sequence[PeriodicSystem]) -> None:
+        if not systems:
+            raise ValueError("systems must hold at least one PeriodicSystem; got none")
+        first = systems[0]
+        for system in systems[1:]:
+            if (
+                system.size != first.size
+                or len(system.loads) != len(first.loads)
+                or system.breakpoints.shape != first.breakpoints.shape
+                or np.abs(system.breakpoints - first.breakpoints).max() > 1e-12
+            ):
+                raise ValueError("systems must have the same size, number of loads and breakpoints")
+        self.systems = systems
+        self.size = first.size
+        self.breakpoints = first.breakpoints
+        self.periods = np.array([system.period for system in systems])
+        self.kicks = [dict(system.velocity_kicks()) for system in systems]
+        self.mass, self.damping, self.stiffness = (
+            np.stack([getattr(system, name) for system in systems])[:, None]
+            for name in ("mass", "damping", "stiffness")
+        )
+
+        if len(systems) == 1:
+            self.scale = _scaling(first.mass, float(self.frequencies[0]))
+        else:
+            self.scale = Family([systems[len(systems) // 2]]).scale
+        self.inverse_scale = np.linalg.inv(self.scale)
+
+    @cached_property
+    def frequencies(self) -> Array:
+        """Fastest undamped motion of each system frozen in the middle of its smooth pieces [rad/s], shape (V,)."""
+        middle = self.breakpoints + np.diff(np.append(self.breakpoints, 1.0)) / 2.0
+        mass, _, stiffness = self.assembled(middle)
+        squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness))
+        frequencies = np.sqrt(np.abs(squares).max(axis=(1, 2)))
+        return np.where(frequencies > 0.0, frequencies, 1.0 / self.periods)
+
+    @property
+    def fastest_angle(self) -> float:
+        """Largest ω T0 of the family [rad]."""
+        return float((self.frequencies * self.periods).max())
+
+    @cached_property
+    def exponent_norm(self) -> float:
+        """Largest integral of ‖S A S⁻¹‖ over a period of the family [-], from the middles of the smooth pieces."""
+        lengths = np.diff(np.append(self.breakpoints, 1.0))
+        norms = np.linalg.norm(self.state_matrices(self.breakpoints + lengths / 2.0), 2, axis=(-2, -1))
+        return float((norms @ lengths).max())
+
+    def assembled(self, fraction: Array) -> tuple[Array, Array, Array]:
+        """M(t), C(t), K(t) at fractions (m,), each of shape (V, m, n, n) or with an axis of length 1."""
+        mass, damping, stiffness = self.mass, self.damping, self.stiffness
+        period = self.periods[:, None, None, None]
+        for loads in zip(*(system.loads for system in self.systems), strict=True):
+            m, c, k = (
+                np.array([getattr(load, name) for load in loads])[:, None, None, None]
+                for name in ("mass", "damping", "stiffness")
+            )
+            through = np.array([load.rate == "total" for load in loads])[:, None, None, None]
+            phi = _values(loads, lambda load: load.shape, fraction)
+            force = phi
+            if any(load.weight is not None for load in loads):
+                force = phi * _values(loads, lambda load: load.weight, fraction)
+            dyad = force[..., :, None] * phi[..., None, :]
+            stiffness = stiffness + k * dyad
+            if c.any():
+                damping = damping + c * dyad
+            if m.any():
+                mass = mass + m * dyad
+            if (through * c).any() or (through * m).any():
+                rate = force[..., :, None] * _values(loads, lambda load: load.slope, fraction)[..., None, :]
+                stiffness = stiffness + (through * c / period) * rate
+                damping = damping + (2.0 * through * m / period) * rate
+            if (through * m).any():
+                second = (
+                    force[..., :, None] * _values(loads, lambda load: load.curvature, fraction)[..., None, :]
+                )
+                stiffness = stiffness + (through * m / period**2) * second
+        return mass, damping, stiffness
+
+    def state_matrices(self, fraction: Array) -> Array:
+        """T0 S A S⁻¹ at fractions (m,), shape (V, m, 2n, 2n)."""
+        n = self.size
+        mass, damping, stiffness = self.assembled(fraction)
+        inverse = np.linalg.inv(mass)
+        scale, back = self.scale[n:, n:], self.inverse_scale[n:, n:]
+        left = -self.periods[:, None, None, None] * (scale @ inverse)
+        ratio = self.scale[0, 0] / self.scale[n, n]
+        state = np.zeros((len(self.systems), fraction.size, 2 * n, 2 * n))
+        state[..., :n, n:] = (self.periods * ratio)[:, None, None, None] * np.eye(n)
+        state[..., n:, :n] = left @ stiffness @ (back / ratio)
+        state[..., n:, n:] = left @ damping @ back
+        return state
+
+    def product(self, edges: Array, exponents: Exponents) -> Array:
+        """Product of the exponentials over the sub-intervals between `edges`, kicks put in, (V, 2n, 2n)."""
+        size = 2 * self.size
+        chunk = max(1, _STACK_ENTRIES // (len(self.systems) * size**2))
+        total = np.broadcast_to(np.eye(size), (len(self.systems), size, size))
+        start, length = edges[:-1], np.diff(edges)
+        for begin in range(0, start.size, chunk):
+            part = slice(begin, begin + chunk)
+            # A motion that grows beyond double precision shows as an entry that is not finite.
+            with np.errstate(over="ignore", invalid="ignore"):
+                steps = exponentials(exponents(start[part], length[part], self.state_matrices))
+                self._put_in_kicks(steps, start[part])
+                total = chain(steps) @ total
+        return np.asarray(total)
+
+    def _put_in_kicks(self, steps: Array, start: Array) -> None:
+        """Precede the sub-interval that starts at a kick's instant by the jump of the state."""
+        n = self.size
+        for number, kicks in enumerate(self.kicks):
+            for at, kick in kicks.items():
+                for place in np.flatnonzero(np.abs(start - at) < 1e-12):
+                    jump = np.eye(2 * n)
+                    jump[n:, :n] = kick
+                    jump = self.scale @ jump @ self.inverse_scale
+                    steps[number, place] = steps[number, place] @ jump
+
+
+def _scaling(mass: Array, frequency: float) -> Array:
+    """S of the state S X = (ω Lᵀq, Lᵀq̇), M = L Lᵀ: both halves have the size of a root energy, as q and q̇ do not."""
+    factor = np.linalg.cholesky(mass).T
+    zero = np.zeros_like(factor)
+    return np.block([[frequency * factor, zero], [zero, factor]])
+
+
+def _values(
+    loads: Sequence[ContactLoad], part: Callable[[ContactLoad], PiecewiseChebyshev | None], fraction: Array
+) -> Array:
+    """Values of one periodic function of each load, evaluated once if they share it: (V or 1, m, components)."""
+    functions = [part(load) for load in loads]
+    if all(function is functions[0] for function in functions):
+        functions = functions[:1]
+    one = np.ones((fraction.size, 1))
+    return np.stack([one if function is None else function(fraction) for function in functions])

@@ -1,0 +1,6 @@
+"""Geometry of a face-gear drive (chapter 3): a `Drive` with its limits, and where its teeth touch.
+
+Flanks and contact lines (`flanks`, `contact_lines`, `recut`), path of the contact on its clock (`kinematics`), phases
+between several pinions (`phases`), outlines and solids (`solids`).
+Public: `Drive`, `ContactPath`, `SkewLine`, `mesh_period`, `phase_split`.
+"""

@@ -1,0 +1,474 @@
+"""Meshing kinematics: contact point, contact centroid and skew line against time (chapter 3, 3.6 and 3.7).
+
+Time is counted in mesh periods T0 (3-20): x = t/T0. A tooth pair enters at every whole number and stays in mesh
+for cr mesh periods (3-19), so that P = ceil(cr) pairs are numbered 0 … P − 1 by age: at time x the pair j has
+been in mesh for frac(x) + j periods, if that is not more than cr. Nothing here depends on the speed.
+
+The contact ratio is an argument: Tregold's `drive.contact_ratio`, the default and the dissertation's choice,
+compresses the whole sweep of the contact line into Tregold's shorter mesh time, rotation included;
+`drive.geometric_contact_ratio` lets the pinion turn as fast as the sweep needs. The travel around the gear's axis is
+compressed with it: the contact runs around with the gear (section 3.7), which turns by cr angular pitches meanwhile.
+
+Positions are smooth on the pieces between breakpoints. `..._on_piece` evaluates one piece up to and including
+both its ends, each as the limit from inside, so that a fit on Chebyshev nodes is not spoilt by the neighbour.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Generic, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.geometry.drive import ADDENDUM, Drive
+from facegear.support import parameters
+from facegear.support.parameters import FloatArray
+
+# Breakpoints closer than this, in mesh periods, are the same instant but for rounding.
+_SAME_INSTANT = 1e-12
+# Pieces next to a square root: each is so many times shorter than the one before it, the last as short as this.
+_GRADING, _SHORTEST = 8.0, 1e-9
+# Relative error of fits, and how short a piece must be, in mesh periods, before it may have more.
+_TOLERANCE, _SHORT = 1e-13, 1e-3
+# The same where the shaper shortens contact lines: their ends are roots of roots, known to 1e-14 or so.
+_CUT_TOLERANCE = 1e-11
+
+
+class PairStates(NamedTuple):
+    """Tooth pairs at instants of shape S; row j is the pair that entered j mesh periods before frac(x) = 0.
+
+    Where a pair is out of contact its radius, angle and length are 0.
+
+    Attributes
+    ----------
+    in_contact : ndarray of bool, shape (P,) + S
+    radius : ndarray, shape (P,) + S
+        r_j of the contact point [m].
+    angle : ndarray, shape (P,) + S
+        θ_j, space-fixed about the gear's axis from the pinion's axis [rad].
+    length : ndarray, shape (P,) + S
+        l_j of the contact line [m].
+    """
+
+    in_contact: NDArray[np.bool_]
+    radius: FloatArray
+    angle: FloatArray
+    length: FloatArray
+
+
+class Centroid(NamedTuple):
+    """Contact centroid (3-21) at instants of shape S.
+
+    Attributes
+    ----------
+    radius : ndarray, shape S
+        r_c [m].
+    angle : ndarray, shape S
+        θ_c, space-fixed about the gear's axis from the pinion's axis [rad].
+    """
+
+    radius: FloatArray
+    angle: FloatArray
+
+
+class SkewStates(NamedTuple):
+    """Tooth pairs on the skew line (3-22) at instants of shape S.
+
+    Attributes
+    ----------
+    in_contact : ndarray of bool, shape (P,) + S
+    radius : ndarray, shape (P,) + S
+        r_j [m]; 0 out of contact.
+    slope : ndarray, shape (P,) + S
+        dr_j/dx [m per mesh period]; 0 out of contact. Divide by T0 for the derivative to time.
+    """
+
+    in_contact: NDArray[np.bool_]
+    radius: FloatArray
+    slope: FloatArray
+
+
+def checked_contact_ratio(drive: Drive, contact_ratio: float | None) -> float:
+    """Return the contact ratio that a drive is computed with.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float or None
+        Mesh periods that a tooth pair stays in mesh, 1 or more; None for Tregold's, `drive.contact_ratio`. Within
+        1e-9 of a whole number it counts as that: a pair then leaves as the next one enters, and the piece between
+        would be too short to be told from rounding.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
+    ratio = drive.contact_ratio if contact_ratio is None else contact_ratio
+    hint = "below 1 there are instants without any tooth in mesh"
+    ratio = parameters.within("contact_ratio", ratio, 1.0, float(drive.pinion_teeth), hint=hint)
+    return float(round(ratio)) if abs(ratio - round(ratio)) < _SHORTEST else ratio
+
+
+def _merged(instants: list[float]) -> tuple[float, ...]:
+    """Fractions of a mesh period in ascending order from 0, without repetitions."""
+    fractions = sorted(instant - math.floor(instant) for instant in instants)
+    kept = [0.0]
+    for fraction in fractions:
+        if fraction - kept[-1] > _SAME_INSTANT and 1.0 - fraction > _SAME_INSTANT:
+            kept.append(fraction)
+    return tuple(kept)
+
+
+def _ages(x: ArrayLike, pairs: int) -> FloatArray:
+    """Mesh periods since entry of each pair, shape (pairs,) + S."""
+    instants = parameters.finite_array("x", x)
+    start = instants - np.floor(instants)
+    return np.stack([start + j for j in range(pairs)])
+
+
+States = TypeVar("States")
+
+
+@dataclass(frozen=True)
+class _TimedPairs(ABC, Generic[States]):
+    """Tooth pairs on a clock: which are in mesh when, for any law of their positions.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more; default Tregold's, `drive.contact_ratio`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
+
+    drive: Drive
+    contact_ratio: float = field(default=None)  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        parameters.keep(self, contact_ratio=checked_contact_ratio(self.drive, self.contact_ratio))
+
+    @property
+    def pairs(self) -> int:
+        """P = ceil(cr), the greatest number of tooth pairs in mesh at once."""
+        return math.ceil(self.contact_ratio)
+
+    @cached_property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Fractions of T0 in [0, 1), ascending from 0, where a pair enters (0) or leaves (cr − ⌊cr⌋)."""
+        return _merged([0.0, self.contact_ratio])
+
+    def pair_states(self, x: ArrayLike) -> States:
+        """Contact points of all pairs at times x [mesh periods], any real numbers of shape S; period 1."""
+        ages = _ages(x, self.pairs)
+        return self._states(ages, ages <= self.contact_ratio)
+
+    def pair_states_on_piece(self, index: int, x: ArrayLike) -> States:
+        """Contact points of all pairs on one smooth piece, both ends included, as limits from inside.
+
+        Parameters
+        ----------
+        index : int
+            Piece between `breakpoints[index]` and the next one (or 1).
+        x : array_like, shape S
+            From −1 at its start to 1 at its end.
+
+        Returns
+        -------
+        PairStates or SkewStates
+
+        Raises
+        ------
+        TypeError, ValueError
+            No such piece, or `x` outside [−1, 1].
+        """
+        piece = parameters.integer_at_least("index", index, 0)
+        if piece >= len(self.breakpoints):
+            raise ValueError(
+                f"index must be below {len(self.breakpoints)}, the number of pieces, got {index!r}"
+            )
+        local = parameters.finite_array("x", x)
+        if np.any(np.abs(local) > 1.0):
+            raise ValueError(
+                f"x must lie in [-1, 1] on a piece, got {local.flat[np.argmax(np.abs(local))]!r}"
+            )
+        start, end = (*self.breakpoints, 1.0)[piece : piece + 2]
+        fraction = 0.5 * (start * (1.0 - local) + end * (1.0 + local))
+        ages = np.stack([fraction + j for j in range(self.pairs)])
+        # No pair enters or leaves inside a piece: its middle decides for the whole.
+        in_mesh = 0.5 * (start + end) + np.arange(self.pairs) < self.contact_ratio
+        return self._states(ages, np.broadcast_to(in_mesh.reshape(-1, *([1] * local.ndim)), ages.shape))
+
+    @abstractmethod
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> States:
+        """Positions of pairs that have been in mesh for so many mesh periods, zero where not in mesh."""
+
+
+@dataclass(frozen=True)
+class ContactPath(_TimedPairs[PairStates]):
+    """Path of the true contact points, the midpoints of the contact lines by arc length.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more; default Tregold's, `drive.contact_ratio`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
+
+    @property
+    def angular_travel(self) -> float:
+        """Travel about the gear's axis over that of the true sweep: cr over the geometric contact ratio."""
+        return self.contact_ratio / self.drive.geometric_contact_ratio
+
+    @cached_property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Fractions of T0 in [0, 1), ascending from 0, between which the positions are smooth.
+
+        0 (a pair enters), cr − ⌊cr⌋ (a pair leaves), and the instants where an end of a contact line changes
+        its bounding edge: corners of the contact region, closed forms at γ = 90°. With so few teeth that the
+        end of the line comes down to the pinion's base circle (`base_circle_instant`), or nearly so, it does
+        that with the square root of the time that is left. Pieces shrink towards that instant, each to an
+        eighth, so that polynomials follow it on every one of them, down to a billionth of T0.
+        """
+        corners = self._corners
+        root = self.drive.contact_region.square_root
+        if root is None:
+            return corners
+        instant, beyond = (self._age(c - self.drive.space_half_angle) for c in root)
+        gaps = ((instant - c) % 1.0 or 1.0 for c in corners)
+        width = min(gap for gap in gaps if _SAME_INSTANT < gap < 1.0 - _SAME_INSTANT or len(corners) == 1)
+        # A root further beyond than that is no trouble.
+        count = math.ceil(math.log(width / max(beyond - instant, _SHORTEST), _GRADING))
+        if count <= 2:
+            return corners
+        return _merged([*corners, *(instant - width / _GRADING**k for k in range(1, count + 1))])
+
+    @cached_property
+    def _corners(self) -> tuple[float, ...]:
+        """Fractions of T0 at which a pair enters, leaves, or an end of its line changes edge."""
+        return _merged([0.0, self.contact_ratio, *map(self._age, self.drive.kink_rotations)])
+
+    def _age(self, rotation: float) -> float:
+        """Mesh periods since entry at a pinion rotation φs."""
+        sweep = self.drive.entry_rotation - self.drive.exit_rotation
+        return (self.drive.entry_rotation - rotation) / sweep * self.contact_ratio
+
+    @cached_property
+    def base_circle_instant(self) -> float | None:
+        """Fraction of T0 at which a contact line's end comes down to the pinion's base circle; None if none does.
+
+        Just before, the contact point moves at a speed that grows without limit, as one over the square root of
+        the time left (`ContactRegion.base_circle`); positions stay continuous.
+        """
+        rotation = self.drive.base_circle_rotation
+        return None if rotation is None else self._age(rotation) % 1.0
+
+    def require_finite_speed(self, name: str) -> None:
+        """Refuse a contact point whose speed grows without limit, for what has to follow it.
+
+        A mass would need infinite energy: the integral of u̇², of one over the time left.
+
+        Parameters
+        ----------
+        name : str
+            What has to follow it, for the message.
+
+        Raises
+        ------
+        ValueError
+            If a contact line's end comes down to the base circle.
+        """
+        if self.base_circle_instant is None:
+            return
+        drive = self.drive
+        enough = math.floor(2.0 * ADDENDUM / (1.0 - math.cos(drive.pressure_angle))) + 1
+        raise ValueError(
+            f"pinion_teeth = {drive.pinion_teeth} is too few for {name} (gear_teeth = {drive.gear_teeth}, pressure "
+            f"angle {math.degrees(drive.pressure_angle):.4g}°): contact lines end on the pinion's base circle, where "
+            f"the contact point's speed has no limit; {enough} pinion teeth are enough at any gear ratio"
+        )
+
+    def require_slow_centroid(self, name: str) -> None:
+        """Refuse a centroid that springs from the exit of one pair to the entry of the next, for what follows it.
+
+        Parameters
+        ----------
+        name : str
+            What has to follow it, for the message.
+
+        Raises
+        ------
+        ValueError
+            If `contact_ratio` is below 1.001: one pair leaves as the next enters, and what is left of (cr − 1) T0
+            for the way back over the whole face width lets speed, and the work of a damper, grow without limit.
+        """
+        if self.contact_ratio < 1.0 + _SHORT:
+            raise ValueError(
+                f"contact_ratio must be at least {1.0 + _SHORT:g} for {name}, which follows the contact centroid back "
+                f"from exit to entry within contact_ratio - 1 mesh periods, got {self.contact_ratio!r}"
+            )
+
+    @property
+    def fit_tolerances(self) -> FloatArray:
+        """Relative errors that a fit of the positions may have, shape (pieces,) [-].
+
+        On the short pieces next to a square root (`breakpoints`), and while the only pair leaves and the next one
+        enters, an error counts by their duration.
+        """
+        tolerance = _CUT_TOLERANCE if self.drive.contact_region.is_cut else _TOLERANCE
+        widths = np.diff(self.breakpoints, append=1.0)
+        if self.breakpoints == self._corners and self.contact_ratio >= 1.0 + _SHORT:
+            return np.full(widths.shape, tolerance)
+        return np.asarray(tolerance * np.maximum(1.0, _SHORT / widths))
+
+    def contact_point(self, fraction: ArrayLike) -> PairStates:
+        """Contact point of one tooth pair against the fraction of its own mesh time cr T0.
+
+        Parameters
+        ----------
+        fraction : array_like, shape S
+            From 0 at first contact (outer edge) to 1 at last contact.
+
+        Returns
+        -------
+        PairStates
+            Fields of shape S; always in contact.
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric, not finite, or outside [0, 1].
+        """
+        own = parameters.finite_array("fraction", fraction)
+        if np.any((own < 0.0) | (own > 1.0)):
+            bad = own[(own < 0.0) | (own > 1.0)].flat[0]
+            raise ValueError(f"fraction must lie in [0, 1] of the pair's mesh time, got {bad!r}")
+        rotation = self.drive.entry_rotation * (1.0 - own) + self.drive.exit_rotation * own
+        lines = self.drive.contact_lines(rotation)
+        angle = self.angular_travel * lines.angle
+        return PairStates(np.ones(own.shape, dtype=bool), lines.radius, angle, lines.length)
+
+    def centroid(self, x: ArrayLike) -> Centroid:
+        """Contact centroid (3-21) at times x [mesh periods], any real numbers of shape S; period 1.
+
+        Raises
+        ------
+        TypeError, ValueError
+            `x` is not numeric or not finite.
+        """
+        return _weighted(self.pair_states(x))
+
+    def centroid_on_piece(self, index: int, x: ArrayLike) -> Centroid:
+        """Contact centroid (3-21) on one smooth piece, both ends included.
+
+        Parameters
+        ----------
+        index : int
+            Piece between `breakpoints[index]` and the next one (or 1).
+        x : array_like, shape S
+            From −1 at its start to 1 at its end.
+
+        Returns
+        -------
+        Centroid
+
+        Raises
+        ------
+        TypeError, ValueError
+            No such piece, or `x` outside [−1, 1].
+        """
+        return _weighted(self.pair_states_on_piece(index, x))
+
+    def overlaid(self, count: int, rotation: ArrayLike) -> PairStates:
+        """Contact points of successive tooth pairs against the face gear's rotation (Fig. 3.9).
+
+        Parameters
+        ----------
+        count : int
+            Number of pairs; pair j enters when the face gear has turned by j θ_N.
+        rotation : array_like, shape S
+            Rotation of the face gear Ω2 t since the first pair entered [rad].
+
+        Returns
+        -------
+        PairStates
+            Fields of shape (count,) + S.
+
+        Raises
+        ------
+        TypeError, ValueError
+            `count` is not an integer of at least 1, or `rotation` not finite numbers.
+        """
+        number = parameters.integer_at_least("count", count, 1)
+        periods = parameters.finite_array("rotation", rotation, "rad") / self.drive.angular_pitch
+        ages = np.stack([periods - j for j in range(number)])
+        return self._states(ages, (ages >= 0.0) & (ages <= self.contact_ratio))
+
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
+        # Dividing an age by cr may pass 1 by the last digit at the end of a piece.
+        point = self.contact_point(np.minimum(ages[in_mesh] / self.contact_ratio, 1.0))
+        radius, angle, length = (np.zeros(ages.shape) for _ in range(3))
+        radius[in_mesh], angle[in_mesh], length[in_mesh] = point.radius, point.angle, point.length
+        return PairStates(np.asarray(in_mesh), radius, angle, length)
+
+
+def _weighted(states: PairStates) -> Centroid:
+    """Mean position weighted by the lengths of the contact lines (3-21)."""
+    total = states.length.sum(axis=0)
+    if np.any(total == 0.0):
+        # Only a contact ratio of exactly 1 does this: one pair leaves as the next enters, both of zero length.
+        raise ValueError("contact_ratio must exceed 1 for the centroid to exist at every instant")
+    weights = states.length / total
+    return Centroid((weights * states.radius).sum(axis=0), (weights * states.angle).sum(axis=0))
+
+
+@dataclass(frozen=True)
+class SkewLine(_TimedPairs[SkewStates]):
+    """Contact points on the straight line from R2 to R1 in time, pair by pair (3-22).
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more; default Tregold's, `drive.contact_ratio`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+    """
+
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> SkewStates:
+        travel = self.drive.inner_radius - self.drive.outer_radius
+        radius = np.where(in_mesh, self.drive.outer_radius + travel * ages / self.contact_ratio, 0.0)
+        slope = np.where(in_mesh, travel / self.contact_ratio, 0.0)
+        return SkewStates(np.asarray(in_mesh), radius, slope)
+
+
+def mesh_period(drive: Drive, gear_speed: float) -> float:
+    """Mesh period T0 = 2π/(N2 Ω2) [s] (3-20).
+
+    Parameters
+    ----------
+    drive : Drive
+    gear_speed : float
+        Ω2 of the face gear [rad/s], greater than 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `gear_speed` is not a number, not finite, zero or negative.
+    """
+    speed = parameters.positive("gear_speed", gear_speed, "rad/s")
+    return 2.0 * math.pi / (drive.gear_teeth * speed)

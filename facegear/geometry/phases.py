@@ -1,0 +1,63 @@
+"""Phases between the meshes of several pinions, from the angles between them (5-1 to 5-4)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.geometry.drive import Drive
+from facegear.support import parameters
+from facegear.support.parameters import FloatArray
+
+# Total angles within this fraction of a pitch of a whole number of teeth count as whole.
+_WHOLE_PITCH = 1e-9
+
+
+class PhaseSplit(NamedTuple):
+    """Total angles between pinions split into whole teeth and a phase, shape S (5-1, 5-2).
+
+    Attributes
+    ----------
+    teeth : ndarray of int
+        ΔN2, whole face-gear teeth between the pinions.
+    positioning_angle : ndarray
+        θ_q = ΔN2 θ_N [rad].
+    phasing_angle : ndarray
+        θ_p = θ_c − θ_q, in [0, θ_N) [rad].
+    phase : ndarray
+        ψ = θ_p/θ_N, in [0, 1): the pinion's contact points at t are the first one's at t + ψ T0 (5-4).
+    """
+
+    teeth: NDArray[np.int64]
+    positioning_angle: FloatArray
+    phasing_angle: FloatArray
+    phase: FloatArray
+
+
+def phase_split(drive: Drive, pinion_angles: ArrayLike) -> PhaseSplit:
+    """Split total angles of pinions into positioning and phasing angle, and give their phases (5-1, 5-2).
+
+    Parameters
+    ----------
+    drive : Drive
+    pinion_angles : array_like, shape S
+        θ_c of each pinion from the first one [rad], any real numbers. An angle within 1e-9 of a pitch of a whole
+        number of teeth counts as whole: 120° in radians is not exact.
+
+    Returns
+    -------
+    PhaseSplit
+
+    Raises
+    ------
+    TypeError, ValueError
+        Not numeric or not finite.
+    """
+    angles = parameters.finite_array("pinion_angles", pinion_angles, "rad")
+    pitches = angles / drive.angular_pitch
+    nearest = np.rint(pitches)
+    whole = np.abs(pitches - nearest) < _WHOLE_PITCH
+    teeth = np.where(whole, nearest, np.floor(pitches))
+    phase = np.where(whole, 0.0, pitches - teeth)
+    positioning = teeth * drive.angular_pitch
+    return PhaseSplit(teeth.astype(np.int64), positioning, phase * drive.angular_pitch, phase)

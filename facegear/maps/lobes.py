@@ -1,0 +1,304 @@
+"""Tips of lobes of instability in the chart of speed and thickness, the heart of the design of section 4.7.
+
+Tips are sharp, so they are not looked for on a grid: :func:`facegear.maps.tracing.tongues` finds every tongue at a few
+thicknesses, from above, and each is then followed to the thickness at which its largest growth rate vanishes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from facegear.floquet.labels import combination
+from facegear.floquet.models import Model
+from facegear.floquet.multiplier_curves import method_for
+from facegear.floquet.multipliers import Method, growth_rate
+from facegear.maps.tracing import Tongue, tongues
+from facegear.support.parameters import ascending, finite_array, within
+
+# Thicknesses at which all tongues are looked for, each so many times the one above.
+_LEVEL = 0.93
+# Tongues of the levels are looked for above this part of the highest speed, where they are cheap to find; the
+# whole range is searched just above the tip that they lead to.
+_FAST_PART = 1 / 3
+# Thickness steps in which the peak of a tongue is followed, relative, and window in which it is looked for.
+_STEP = 0.01
+_WINDOW = 0.004
+_MOST_WINDOWS = 40
+# Speeds at which the growth of flutter is sampled as the thickness changes.
+_FLUTTER_SAMPLES = 15
+
+
+class UnstableTopError(ValueError):
+    """A model is still unstable at the top of the range of thickness.
+
+    Attributes
+    ----------
+    tongue : Tongue
+        Where.
+    thickness_ratio : float
+        h/a there.
+    """
+
+    def __init__(self, tongue: Tongue, thickness_ratio: float) -> None:
+        super().__init__(
+            f"thickness_range must end above all lobes: at h/a = {thickness_ratio:.6g} the model is unstable at "
+            f"{tongue.peak:.6g} rad/s, {tongue.label}"
+        )
+        self.tongue = tongue
+        self.thickness_ratio = thickness_ratio
+
+
+class StableRangeError(ValueError):
+    """A model is stable in the whole range of thickness.
+
+    Attributes
+    ----------
+    thickness_ratio : float
+        Lowest h/a that was tried.
+    """
+
+    def __init__(self, thickness_ratio: float, speed_range: tuple[float, float]) -> None:
+        super().__init__(
+            f"thickness_range must reach down to an unstable lobe: down to h/a = {thickness_ratio:.6g} the model is "
+            f"stable from {speed_range[0]:.6g} to {speed_range[1]:.6g} rad/s"
+        )
+        self.thickness_ratio = thickness_ratio
+
+
+@dataclass(frozen=True)
+class Lobe:
+    """Tip of a lobe of instability in the chart of speed and thickness.
+
+    Attributes
+    ----------
+    thickness_ratio : float
+        h/a of its highest point [-].
+    speed : float
+        Ω2 there [rad/s]; an end of the speed range where the lobe is cut off by it.
+    label : str
+        Modes and order, as :attr:`facegear.maps.tracing.Tongue.label`.
+    """
+
+    thickness_ratio: float
+    speed: float
+    label: str
+
+
+@dataclass(frozen=True)
+class CriticalThickness:
+    """Smallest thickness ratio above which a drive is stable in the whole speed range.
+
+    Attributes
+    ----------
+    lobes : tuple of Lobe
+        Lobes whose tips were traced, the deciding one first. Lobes far below it are not among them.
+    """
+
+    lobes: tuple[Lobe, ...]
+
+    @property
+    def lobe(self) -> Lobe:
+        """Lobe that decides."""
+        return self.lobes[0]
+
+    @property
+    def thickness_ratio(self) -> float:
+        """Critical thickness ratio h/a [-]."""
+        return self.lobe.thickness_ratio
+
+
+def highest_lobes(
+    model_at: Callable[[float], Model],
+    lowest_speed: float,
+    highest_speeds: Sequence[float],
+    thickness_range: tuple[float, float],
+    tolerance: float = 1e-5,
+) -> tuple[CriticalThickness, ...]:
+    """Tips of the highest lobes of any model that depends on a thickness ratio, for nested ranges of speed.
+
+    From the top of the range downwards, all tongues are found at thicknesses 7 % apart until there are some. Each is
+    followed upwards to its tip. Just above the highest tip all tongues are looked for once more, and followed if
+    there are any, until there are none. What can be missed is a lobe that opens and closes between two of the
+    levels above the result. A narrower range of speed begins where the wider one ended: above its result it is
+    stable, too.
+
+    Parameters
+    ----------
+    model_at : callable
+        Thickness ratio to model.
+    lowest_speed : float
+        Lowest speed of all ranges [rad/s].
+    highest_speeds : sequence of float
+        Upper ends of the ranges [rad/s].
+    thickness_range : tuple of float
+        Lowest and highest thickness ratio.
+    tolerance : float
+        Accuracy of the tips in h/a, 1e-7 to 1e-3.
+
+    Returns
+    -------
+    tuple of CriticalThickness
+        One for each of `highest_speeds`, in their order.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a range is not two ascending positive numbers, the model is unstable at the top of the thickness range, or
+        stable in all of it.
+    """
+    wanted = finite_array("highest_speeds", highest_speeds, "rad/s")
+    if wanted.ndim != 1 or wanted.size == 0:
+        raise ValueError(f"highest_speeds must list at least one speed in rad/s, got {highest_speeds!r}")
+    for highest in wanted.tolist():
+        lowest_speed, _ = ascending("speed_range", (lowest_speed, highest), "rad/s")
+    thinnest, thickest = ascending("thickness_range", thickness_range)
+    tolerance = within("tolerance", tolerance, 1e-7, 1e-3)
+    traced: list[Lobe] = []
+    stable = math.inf
+    results: dict[float, CriticalThickness] = {}
+    for highest in sorted(set(wanted.tolist()), reverse=True):
+        search = _Search(model_at, (lowest_speed, highest), (thinnest, thickest), tolerance)
+        if stable == math.inf:
+            search.refuse_unstable_top()
+            stable = thickest
+        # Tips strictly inside a narrower range are those of the wider one.
+        inside = tuple(lobe for lobe in traced if lobe.speed < highest)
+        if not (inside and inside[0].thickness_ratio >= stable - tolerance):
+            inside = search.lobes_below(stable, inside)
+        results[highest] = CriticalThickness(inside)
+        traced, stable = list(inside), inside[0].thickness_ratio + tolerance
+    return tuple(results[highest] for highest in wanted.tolist())
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Model, and where its lobes are looked for."""
+
+    model_at: Callable[[float], Model]
+    speed_range: tuple[float, float]
+    thickness_range: tuple[float, float]
+    tolerance: float
+
+    @property
+    def fast_range(self) -> tuple[float, float]:
+        lowest, highest = self.speed_range
+        return max(lowest, _FAST_PART * highest), highest
+
+    def tongues_at(self, thickness_ratio: float, speed_range: tuple[float, float]) -> tuple[Tongue, ...]:
+        return tongues(self.model_at(thickness_ratio), *speed_range)
+
+    def refuse_unstable_top(self) -> None:
+        thickest = self.thickness_range[1]
+        if found := self.tongues_at(thickest, self.fast_range):
+            raise UnstableTopError(found[0], thickest)
+
+    def lobes_below(self, stable: float, known: Sequence[Lobe]) -> tuple[Lobe, ...]:
+        """Lobes below a thickness that is stable, the highest first; `known` are tips that have been traced."""
+        thinnest = self.thickness_range[0]
+        lobes, level = list(known), stable
+        found: tuple[Tongue, ...] = ()
+        if lobes:
+            level = max(lobe.thickness_ratio for lobe in lobes) + self.tolerance
+            found = self.tongues_at(level, self.speed_range)
+        else:
+            while not found and level > thinnest:
+                level = max(_LEVEL * level, thinnest)
+                found = self.tongues_at(level, self.fast_range)
+            # Without any in the fast part, slow lobes may still reach the bottom of the range.
+            found = found or self.tongues_at(level, self.speed_range)
+        while found:
+            lobes += [self.tip(level, tongue) for tongue in found]
+            level = max(lobe.thickness_ratio for lobe in lobes) + self.tolerance
+            found = self.tongues_at(level, self.speed_range)
+        if not lobes:
+            lowest, highest = self.speed_range
+            raise StableRangeError(thinnest, (lowest, highest))
+        return tuple(sorted(lobes, key=lambda lobe: -lobe.thickness_ratio))
+
+    def tip(self, level: float, tongue: Tongue) -> Lobe:
+        """Follow a tongue upwards to the thickness at which its largest growth rate vanishes."""
+        if tongue.combination.kind == "mean":
+            return self.broad_tip(level, tongue)
+        return self.sharp_tip(level, tongue)
+
+    def broad_tip(self, level: float, tongue: Tongue) -> Lobe:
+        """Tip of flutter, whose growth rate has no sharp peak over speed: samples of its speeds show the largest."""
+        method = method_for(self.model_at(level), *self.speed_range)
+        speeds = np.unique([*np.linspace(tongue.lower, tongue.upper, _FLUTTER_SAMPLES), tongue.peak]).tolist()
+
+        def rates(thickness_ratio: float) -> list[float]:
+            model = self.model_at(thickness_ratio)
+            return [growth_rate(model.system(speed), method) for speed in speeds]
+
+        low, high, top = level, level * (1 + _STEP), self.thickness_range[1]
+        while max(rates(high)) > 0.0:
+            if high >= top:
+                raise UnstableTopError(tongue, high)
+            low, high = high, min(high * (1 + 2 * _STEP), top)
+        tip = float(brentq(lambda ratio: max(rates(ratio)), low, high, xtol=self.tolerance / 4))
+        return Lobe(tip, speeds[int(np.argmax(rates(tip)))], tongue.label)
+
+    def sharp_tip(self, level: float, tongue: Tongue) -> Lobe:
+        """Tip of a resonance: its peak over speed is followed."""
+        method = method_for(self.model_at(level), *self.speed_range)
+        points = [(level, tongue.peak)]
+        growth = tongue.growth_rate
+
+        def peak(thickness_ratio: float) -> float:
+            """Growth rate; remembers the speed."""
+            (x0, y0), (x1, y1) = points[-2] if len(points) > 1 else points[0], points[-1]
+            # Natural frequencies are nearly in proportion to thickness, until two points tell more.
+            exponent = math.log(y1 / y0) / math.log(x1 / x0) if x1 != x0 else 1.0
+            guess = y1 * (thickness_ratio / x1) ** min(max(exponent, 0.0), 2.0)
+            speed, value = _peak(self.model_at(thickness_ratio), method, guess, self.speed_range)
+            points.append((thickness_ratio, speed))
+            return value
+
+        step = 0.1 * _STEP
+        low = high = level
+        while growth > 0.0:
+            if high >= self.thickness_range[1]:
+                raise UnstableTopError(tongue, high)
+            low, high = high, high * (1 + step)
+            growth = peak(high)
+            step = _STEP
+        tip = float(brentq(peak, low, high, xtol=self.tolerance / 4))
+        peak(tip)
+        speed = points[-1][1]
+        return Lobe(tip, speed, combination(self.model_at(tip).system(speed), method).label)
+
+
+def _peak(
+    model: Model, method: Method, guess: float, speed_range: tuple[float, float]
+) -> tuple[float, float]:
+    """Speed near a guess at which the growth rate is largest, and the growth rate there."""
+
+    def growth(speed: float) -> float:
+        return growth_rate(model.system(speed), method)
+
+    lowest, highest = speed_range
+    centre = min(max(guess, lowest), highest)
+    for _ in range(_MOST_WINDOWS):
+        low, high = max(centre * (1 - _WINDOW), lowest), min(centre * (1 + _WINDOW), highest)
+        result = minimize_scalar(
+            lambda speed: -growth(speed),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": 2e-6 * centre},
+        )
+        best, value = float(result.x), -float(result.fun)
+        margin = 0.02 * (high - low)
+        ends = [end for end in (low, high) if abs(best - end) < margin]
+        if not ends:
+            return best, value
+        (end,) = ends
+        if end in speed_range:
+            at_end = growth(end)
+            return (end, at_end) if at_end >= value else (best, value)
+        centre = best
+    raise ArithmeticError(f"no largest growth rate near {guess:.6g} rad/s: the resonance was lost")

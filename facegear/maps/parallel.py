@@ -1,0 +1,218 @@
+"""Independent tasks shared out over processes or threads, with results kept on disk.
+
+joblib runs them: by default on this machine, or wherever ``joblib.parallel_config`` says, a Dask cluster for
+example.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, Protocol, TypeVar
+
+import numpy as np
+
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import Array
+from facegear.support.provenance import code_digest
+
+Workers = Literal["processes", "threads"]
+T = TypeVar("T")
+
+
+class Task(Protocol):
+    """A piece of work with an array as its result."""
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on: arrays, numbers and text."""
+        ...
+
+    def compute(self) -> Array:
+        """Return the result."""
+        ...
+
+
+def computed(
+    tasks: Sequence[Task],
+    description: str,
+    jobs: int,
+    progress: bool | None,
+    cache_directory: str | os.PathLike[str] | None,
+    prefer: Workers = "processes",
+) -> Iterator[tuple[int, Array]]:
+    """Results of all tasks with their numbers, in the order in which they are there.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+    description : str
+        For the progress bar.
+    jobs : int
+        Number of workers, as joblib's ``n_jobs``; -1 for all processors or workers.
+    progress : bool, optional
+        Show a progress bar; if None, only on a terminal.
+    cache_directory : path, optional
+        Where results are kept, each written as soon as it is there, under a name that is a digest of all it depends
+        on, the code of the package included. The file is bound to that name: one that is damaged, or lies where
+        another belongs, is not used.
+    prefer : {"processes", "threads"}
+        What the workers are on this machine. Threads start at once, and keep up where nearly all time goes into
+        large batches of NumPy's linear algebra.
+
+    Yields
+    ------
+    int, array
+        Number of the task and its result.
+    """
+    from tqdm.auto import tqdm
+
+    store = None if cache_directory is None else _Store(Path(cache_directory))
+    waiting = []
+    # tqdm itself takes a notebook for a terminal.
+    shown = sys.stderr.isatty() if progress is None else progress
+    with tqdm(total=len(tasks), desc=description, disable=not shown) as bar:
+        for number, task in enumerate(tasks):
+            kept = None if store is None else store.load(task)
+            if kept is None:
+                waiting.append(number)
+            else:
+                bar.update()
+                yield number, kept
+        for number, result in _in_parallel([(number, tasks[number]) for number in waiting], jobs, prefer):
+            if store is not None:
+                store.save(tasks[number], result)
+            bar.update()
+            yield number, result
+
+
+def parts_of(system: PeriodicSystem) -> Iterator[Any]:
+    """Everything a system is made of, for the content of a task."""
+    yield from (system.mass, system.damping, system.stiffness, system.period)
+    for load in system.loads:
+        yield from (load.mass, load.damping, load.stiffness, load.rate)
+        for function in (load.shape, load.weight):
+            if function is None:
+                yield None
+            else:
+                yield from (function.breakpoints, function.coefficients)
+
+
+def in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]], jobs: int) -> list[T]:
+    """Call a function with each of several tuples of arguments, in processes of one thread each.
+
+    Parameters
+    ----------
+    function : callable
+        Defined at the top of a module, so that another process can find it.
+    work : iterable of tuple
+        Arguments, one tuple a call.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``.
+
+    Returns
+    -------
+    list
+        Results in the order of `work`.
+    """
+    from joblib import Parallel, delayed
+
+    return list(Parallel(n_jobs=jobs)(delayed(_on_one_thread)(function, *arguments) for arguments in work))
+
+
+def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
+    """Call a function on one thread: the matrices are too small to share."""
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1):
+        return function(*arguments)
+
+
+def _in_parallel(
+    tasks: Sequence[tuple[int, Task]], jobs: int, prefer: Workers
+) -> Iterator[tuple[int, Array]]:
+    """Run tasks where joblib says; a single one is not worth another process."""
+    from joblib import Parallel, delayed, effective_n_jobs
+    from joblib.parallel import get_active_backend
+    from threadpoolctl import threadpool_limits
+
+    if len(tasks) == 1:
+        yield _run(*tasks[0])
+    elif get_active_backend(prefer=prefer)[0].supports_return_generator:
+        work = (delayed(_run)(*task) for task in tasks)
+        # Threads share one limit: set before the first, or each would restore what another has set.
+        with threadpool_limits(limits=1):
+            yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
+                work
+            )
+    else:
+        # Such a backend answers when all is done: give it rounds, so that an interruption loses one only.
+        size = 4 * effective_n_jobs(jobs)
+        for start in range(0, len(tasks), size):
+            yield from Parallel(n_jobs=jobs, batch_size=1)(
+                delayed(_run)(*task) for task in tasks[start : start + size]
+            )
+
+
+def _run(number: int, task: Task) -> tuple[int, Array]:
+    return number, _on_one_thread(task.compute)
+
+
+@dataclass(frozen=True)
+class _Store:
+    """Finished tasks on disk, one file each, named by a digest of everything they depend on."""
+
+    directory: Path
+
+    def __post_init__(self) -> None:
+        self.directory.mkdir(parents=True, exist_ok=True)
+
+    def _key(self, task: Task) -> str:
+        digest = hashlib.sha256(f"facegear {code_digest()} {type(task).__name__}".encode())
+        # An array inside a model is written out, with all its elements and digits.
+        with np.printoptions(threshold=sys.maxsize, floatmode="unique"):
+            for part in task.content():
+                if isinstance(part, np.ndarray):
+                    digest.update(
+                        f"|{part.shape}{part.dtype}".encode() + np.ascontiguousarray(part).tobytes()
+                    )
+                else:
+                    digest.update(f"|{part!r}".encode())
+        return digest.hexdigest()
+
+    def load(self, task: Task) -> Array | None:
+        """Return a result that is there, undamaged and this task's, else None."""
+        key = self._key(task)
+        try:
+            content = (self.directory / f"{key}.npz").read_bytes()
+            with np.load(io.BytesIO(content), allow_pickle=False) as file:
+                result, digest = file["result"], str(file["digest"])
+        # A damaged archive fails in many ways (zipfile, zlib, numpy); all of them mean: compute again.
+        except Exception:
+            return None
+        if result.dtype != np.float64 or digest != _digest(key, result):
+            return None
+        return np.asarray(result, dtype=float)
+
+    def save(self, task: Task, result: Array) -> None:
+        """Write under another name first: a file with the right name is complete."""
+        key = self._key(task)
+        handle, temporary = tempfile.mkstemp(dir=self.directory, suffix=".part")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                np.savez(file, result=result, digest=_digest(key, result))
+            os.replace(temporary, self.directory / f"{key}.npz")
+        except BaseException:
+            os.unlink(temporary)
+            raise
+
+
+def _digest(key: str, result: Array) -> str:
+    """Bind a result to the task that it belongs to."""
+    whole = f"{key} {result.shape}".encode() + np.ascontiguousarray(result).tobytes()
+    return hashlib.sha256(whole).hexdigest()

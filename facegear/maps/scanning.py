@@ -1,0 +1,252 @@
+"""Speeds at which to look for instability, found by following multipliers.
+
+A multiplier leaves the unit circle where it meets another one there, or where the system is unstable by itself. So
+the multipliers are followed: around each sampled speed the eigenvalue problem of the transition matrix is expanded
+to first order, Φ + δ Φ', which foretells for each pair of multipliers the speed where their phases meet and a bound
+of their modulus there. Where the bound reaches 1 the meeting itself becomes a sample, and foretells it better. A
+tongue is found at its centre in this way and not by the step of a grid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from facegear.floquet.multiplier_curves import ComplexArray, MultiplierCurve
+from facegear.floquet.piecewise import Array
+
+# Largest angle [rad] by which the fastest live motion turns from one sample to the next.
+SAMPLE_ANGLE = 0.2
+FEWEST_SAMPLES = 64
+# A pair is followed if so many times its foretold coupling could make it unstable.
+_SAFETY = 4.0
+# A meeting of an unstable motion is followed if the coupling, `_SAFETY` included, changes its growth by this part.
+_TELLING = 0.1
+# Reach of the expansion around a sample, in steps: neighbours overlap.
+_REACH = 1.0
+_ROUNDS = 8
+# Between unstable samples the growth may differ from a straight line by this part of itself.
+_STRAIGHT = 0.25
+_MOST_HALVINGS = 40
+# Pairs of multipliers with a smaller product are left alone: nothing brings them back to 1 within a step.
+_DECAYED = 1e-6
+# Relative accuracy of borders and of the speed where two phases meet: far below 0.01 rpm.
+SPEED_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """Speeds looked at, ascending, and the spectral radius at each."""
+
+    speeds: Array
+    radii: Array
+
+    def with_speeds(self, curve: MultiplierCurve, speeds: Sequence[float] | Array) -> Scan:
+        """Return the scan with more speeds; those already there are left out."""
+        added = np.unique(np.asarray(speeds, dtype=float))
+        added = np.setdiff1d(added[(added > curve.lowest_speed) & (added < curve.highest_speed)], self.speeds)
+        if added.size == 0:
+            return self
+        return self.with_samples(Scan(added, curve.spectral_radii(added)))
+
+    def with_samples(self, other: Scan) -> Scan:
+        """Return the scan with those samples of another one that lie between its ends, each speed once."""
+        inside = (other.speeds > self.speeds[0]) & (other.speeds < self.speeds[-1])
+        speeds, order = np.unique(np.append(self.speeds, other.speeds[inside]), return_index=True)
+        return Scan(speeds, np.append(self.radii, other.radii[inside])[order])
+
+
+def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) -> Scan:
+    """Spectral radii on a grid, at all meetings of multipliers that matter, and at extremes between samples."""
+    low, high = 1.0 / curve.highest_speed, 1.0 / curve.lowest_speed
+    grid = curve.motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES)
+    seeds = np.concatenate([grid, [1.0 / speed for speed in hints if low < 1.0 / speed < high]])
+    meetings, looked_at = _meetings(curve, seeds, _steps(grid, seeds), threshold)
+    ends = np.array([curve.lowest_speed, curve.highest_speed])
+    scan = Scan(ends, curve.spectral_radii(ends)).with_samples(looked_at)
+    scan = scan.with_speeds(curve, 1.0 / meetings)
+    scan = scan.with_speeds(curve, _maxima(curve, scan, threshold))
+    return scan.with_speeds(curve, _gaps(curve, scan, threshold))
+
+
+def _steps(grid: Array, points: Array) -> Array:
+    """Distance of the points of a grid next to each point, the larger of both sides."""
+    steps = np.diff(grid)
+    right = np.searchsorted(grid, points, side="right").clip(1, steps.size) - 1
+    left = np.searchsorted(grid, points, side="left").clip(1, steps.size) - 1
+    return np.asarray(np.maximum(steps[left], steps[right]))
+
+
+def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: float) -> tuple[Array, Scan]:
+    """Slowness 1/speed where phases of two multipliers meet whose growth there could pass the threshold.
+
+    Returns them and all samples that were looked at for it.
+    """
+    centres, reach, batch = seeds, _REACH * steps, curve.batch
+    found, speeds, radii = [], [], []
+    for _ in range(_ROUNDS):
+        parts = [
+            _foretold(curve, centres[i : i + batch], reach[i : i + batch], threshold)
+            for i in range(0, centres.size, batch)
+        ]
+        meeting = np.concatenate([part[0] for part in parts])
+        distance = np.concatenate([part[1] for part in parts])
+        speeds += [part[2].speeds for part in parts]
+        radii += [part[2].radii for part in parts]
+        # Neighbours foretell the same meeting: those that agree to a thousandth of the step taken are one.
+        keep = _distinct(meeting, np.maximum(1e-3 * distance, 1e-12 * meeting))
+        meeting, distance = meeting[keep], distance[keep]
+        found.append(meeting)
+        moving = distance > 1e-2 * SPEED_TOLERANCE * meeting
+        # The error of a foretold meeting is of second order in its distance.
+        centres, reach = meeting[moving], 0.5 * distance[moving]
+        if centres.size == 0:
+            break
+    return np.concatenate(found), Scan(np.concatenate(speeds), np.concatenate(radii))
+
+
+def _distinct(points: Array, tolerance: Array) -> Array:
+    """Numbers of points, the ones foretold from nearby first, that differ by more than their tolerance."""
+    order = np.argsort(points)
+    kept: list[int] = []
+    for i in order.tolist():
+        if kept and points[i] - points[kept[-1]] <= max(tolerance[i], tolerance[kept[-1]]):
+            if tolerance[i] < tolerance[kept[-1]]:
+                kept[-1] = i
+            continue
+        kept.append(i)
+    return np.array(kept, dtype=int)
+
+
+def _foretold(
+    curve: MultiplierCurve, centres: Array, reach: Array, threshold: float
+) -> tuple[Array, Array, Scan]:
+    """Meetings of multipliers within `reach` of samples, their distances from them, both in slowness, and the samples.
+
+    In the eigenvectors of a sample ln(Φ + δ Φ') is diag(p) + δ G to first order. The block of a pair has the
+    exponents (p_i + p_j + δ (G_ii + G_jj))/2 ± √D with D = (p_i − p_j + δ (G_ii − G_jj))²/4 + δ² G_ij G_ji. D is
+    smooth where the exponents themselves have a root, at a border, and largest in the middle of a tongue: where two
+    phases would meet without the coupling.
+    """
+    inside = (1.0 / centres >= curve.lowest_speed) & (1.0 / centres <= curve.highest_speed)
+    centres, reach = centres[inside], reach[inside]
+    if centres.size == 0:
+        return centres, reach, Scan(centres, centres)
+    matrices, slopes = curve.transition_matrices(1.0 / centres), curve.slopes(1.0 / centres)
+    values, vectors = np.linalg.eig(matrices)
+    samples = Scan(1.0 / centres, np.abs(values).max(axis=1))
+    # Exactly dependent eigenvectors, at a border, have no inverse.
+    left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
+    forces = left @ slopes @ vectors
+    values = np.where(values == 0.0, 1e-300, values)
+    rates = np.diagonal(forces, axis1=1, axis2=2) / values
+    first, second = np.triu_indices(values.shape[1], 1)
+    # Each pair off the real axis has a conjugate that says the same; decayed motions do not come back.
+    candidate = (values[:, first].imag >= 0.0) & (np.abs(values[:, first] * values[:, second]) > _DECAYED)
+    sample, pair = np.nonzero(candidate)
+    i, j = first[pair], second[pair]
+    a, b = values[sample, i], values[sample, j]
+    apart = np.log(a / b)
+    turning = rates[sample, i] - rates[sample, j]
+    # Off the diagonal the logarithm has the divided difference of its values.
+    scale = np.where(np.abs(a - b) > 1e-6 * np.abs(a), apart / np.where(a == b, 1.0, a - b), 1.0 / a)
+    coupling = forces[sample, i, j] * forces[sample, j, i] * scale**2
+    bend = (turning**2 / 4.0 + coupling).real
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = -(apart * turning).real / (4.0 * bend)
+    near = (bend < 0.0) & np.isfinite(step) & (np.abs(step) <= reach[sample])
+    sample, i, j, step = sample[near], i[near], j[near], step[near]
+    mean = np.log(np.abs(a * b))[near] / 2.0 + step * (rates[sample, i] + rates[sample, j]).real / 2.0
+    difference = (apart[near] + step * turning[near]) / 2.0
+    spread = difference.real**2 + _SAFETY**2 * np.abs(coupling[near]) * step**2
+    foretold = np.abs((difference**2 + coupling[near] * step**2).real)
+    # The growth of the pair without the coupling: where that alone is unstable, and the coupling can change it by a
+    # small part only, the meeting tells nothing new.
+    apart_only = np.abs(difference.real)
+    change = np.sqrt(np.maximum(spread, foretold)) - apart_only
+    excess = mean + apart_only - threshold
+    matters = (excess + change > 0.0) & (change > _TELLING * excess)
+    return centres[sample[matters]] + step[matters], np.abs(step[matters]), samples
+
+
+def _maxima(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]:
+    """Speeds of maxima between stable samples that may pass the threshold without any meeting."""
+    height = scan.radii - 1.0 - threshold
+    middle, left, right = height[1:-1], height[:-2], height[2:]
+    # A parabola through three samples rises at most by an eighth of its bend above the middle one.
+    bend = 2.0 * middle - left - right
+    near = (middle < 0.0) & (middle >= left) & (middle >= right) & (middle + bend > 0.0)
+    return [
+        float(
+            minimize_scalar(
+                lambda speed: -float(curve.spectral_radii(np.array([speed]))[0]),
+                bounds=(float(scan.speeds[i]), float(scan.speeds[i + 2])),
+                method="bounded",
+                options={"xatol": SPEED_TOLERANCE * curve.lowest_speed},
+            ).x
+        )
+        for i in np.flatnonzero(near).tolist()
+    ]
+
+
+class _Critical(NamedTuple):
+    """Largest multiplier at a speed: growth in a period above the threshold, and its eigenvectors, left r = 1."""
+
+    speed: float
+    growth: float
+    left: ComplexArray
+    right: ComplexArray
+
+    def continues(self, other: _Critical) -> bool:
+        """Whether the critical motion is the same at another speed nearby."""
+        return bool(np.abs((self.left @ other.right) * (other.left @ self.right)) > 0.5)
+
+
+def _critical(curve: MultiplierCurve, speeds: Array, threshold: float) -> list[_Critical]:
+    """Critical motions at speeds (m,)."""
+    found = []
+    for part in np.array_split(speeds, speeds.size // curve.batch + 1):
+        values, vectors = np.linalg.eig(curve.transition_matrices(part))
+        left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
+        # Of a conjugate pair the one above the axis, at each speed.
+        largest = np.argmax(np.abs(values) * np.where(values.imag < 0.0, 1.0 - 1e-9, 1.0), axis=1)
+        for row, k in enumerate(largest.tolist()):
+            growth = float(np.abs(values[row, k])) - 1.0 - threshold
+            found.append(_Critical(float(part[row]), growth, left[row, k], vectors[row, :, k]))
+    return found
+
+
+def _gaps(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]:
+    """Speeds between unstable samples that separate tongues which lie close together.
+
+    Intervals between unstable samples are halved where the critical motion is not the same at both ends, or the
+    growth is not near a straight line, until a stable speed is found or nothing is left to see.
+    """
+    unstable = scan.radii - 1.0 > threshold
+    samples = dict(
+        zip(
+            np.flatnonzero(unstable).tolist(),
+            _critical(curve, scan.speeds[unstable], threshold),
+            strict=True,
+        )
+    )
+    intervals = [(samples[i], samples[i + 1]) for i in samples if i + 1 in samples]
+    found: list[float] = []
+    for _ in range(_MOST_HALVINGS):
+        intervals = [(a, b) for a, b in intervals if b.speed - a.speed > SPEED_TOLERANCE * b.speed]
+        if not intervals:
+            break
+        middles = np.array([(a.speed + b.speed) / 2.0 for a, b in intervals])
+        halves = []
+        for (a, b), middle in zip(intervals, _critical(curve, middles, threshold), strict=True):
+            found.append(middle.speed)
+            if middle.growth > 0.0:
+                least = min(a.growth, b.growth, middle.growth)
+                curved = abs(middle.growth - (a.growth + b.growth) / 2.0) > _STRAIGHT * least
+                halves += [(c, d) for c, d in ((a, middle), (middle, b)) if curved or not c.continues(d)]
+        intervals = halves
+    return found

@@ -1,0 +1,443 @@
+"""How Floquet multipliers, growth rates and borders of tongues change with the parameters of a model.
+
+In the fraction x = t/T0 of the period X' = B X with B = T0 A. Its derivative by a parameter p obeys the same
+equation with a further term, so that the state and its derivative together have the transition matrix
+
+    d/dx [X, dX/dp] = [[B, 0], [dB/dp, B]] [X, dX/dp]   →   [[Φ, 0], [dΦ/dp, Φ]],
+
+which the methods of :mod:`facegear.floquet.multipliers` take as any other. A simple multiplier λ with the left and
+right eigenvectors y and x of Φ then changes by dλ = yᴴ dΦ x / (yᴴ x), and a border of a tongue, where max|λ| = 1, moves
+by dΩ/dp = −(∂|λ|/∂p) / (∂|λ|/∂Ω).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from facegear.floquet.models import Model, replace_parameter, value_of
+from facegear.floquet.multipliers import AdaptiveMagnus, Method
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.piecewise import Array, chebyshev_coefficients, chebyshev_points
+from facegear.floquet.stepping import Family
+from facegear.maps.tracing import Tongue
+from facegear.support.parameters import integer_at_least, positive
+
+ComplexArray = NDArray[np.complex128]
+
+SPEED = "speed"
+"""Name under which the speed [rad/s] stands among the parameters."""
+
+# Matrices are read off the model at nodes this far around the parameter's value, relative to it.
+_REACH = 0.05
+_NODES = 11
+# Largest part of the last coefficients of the polynomial through them: far above rounding, far below any error
+# that would show.
+_TAIL = 1e-12
+# Relative distance below which two multipliers are one: the derivative has then lost half of all digits.
+_DOUBLE = 1e-7
+# Relative distance of moduli below which two multipliers are critical at once.
+_SAME_MODULUS = 1e-9
+# How far from 1 the spectral radius may be at a speed that is given as a border.
+_BORDER = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class SystemDerivative:
+    """Derivatives of everything a periodic system holds by one parameter; shape vectors do not change.
+
+    Attributes
+    ----------
+    mass, damping, stiffness : array, shape (n, n)
+        dM, dC, dK of the constant parts, in their units per unit of the parameter.
+    load_mass, load_damping, load_stiffness : array, shape (p,)
+        dm, dc, dk of the loads.
+    period : float
+        dT0.
+    """
+
+    mass: Array
+    damping: Array
+    stiffness: Array
+    load_mass: Array
+    load_damping: Array
+    load_stiffness: Array
+    period: float
+
+
+def system_derivative(model: Model, speed: float, parameter: str) -> SystemDerivative:
+    """Differentiate the matrices, load parameters and period of a model by one of its parameters.
+
+    They are read at eleven Chebyshev nodes within five percent of the parameter's value and the polynomial through
+    them is differentiated: exact but for rounding where they are polynomials of the parameter, as masses,
+    stiffnesses and dampings are, and to twelve digits for other smooth functions.
+
+    Parameters
+    ----------
+    model : Model
+        A frozen dataclass with a method ``system(speed)``.
+    speed : float
+        Speed [rad/s].
+    parameter : str
+        Name as for :func:`facegear.floquet.models.replace_parameter`, or ``"speed"``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no such parameter, its value is 0 and sets no scale, or the shape vectors depend on it.
+    ArithmeticError
+        If a matrix does not vary smoothly with the parameter.
+    """
+    value = parameter_value(model, speed, parameter)
+    if value == 0.0:
+        raise ValueError(
+            f"{parameter} is 0 and sets no scale for its derivative; give the model a small value instead"
+        )
+    half = _REACH * abs(value)
+    nodes = (value + half * chebyshev_points(_NODES)).tolist()
+    present = _system(model, speed, parameter, value)
+    systems = [_system(model, speed, parameter, node) for node in nodes]
+    for system in systems:
+        _same_shapes(present, system, parameter)
+
+    def derivative(name: str, parts: Sequence[Any]) -> Array:
+        values = np.array(parts, dtype=float)
+        series = chebyshev_coefficients(values)
+        size = np.abs(series).max()
+        if np.abs(series[-2:]).max() > _TAIL * size:
+            raise ArithmeticError(
+                f"{name} does not vary smoothly with {parameter} within {100 * _REACH:.0f} % of {value:.6g}"
+            )
+        # Rounding alone is no dependence.
+        series[1:, (values == values[0]).all(axis=0)] = 0.0
+        return np.asarray(chebyshev.chebval(0.0, chebyshev.chebder(series, axis=0)) / half, dtype=float)
+
+    def of_loads(name: str) -> Array:
+        return derivative(
+            f"{name} of the loads", [[getattr(x, name) for x in s.loads] for s in systems]
+        ).reshape(-1)
+
+    loads = {
+        name: of_loads(name) if present.loads else np.zeros(0) for name in ("mass", "damping", "stiffness")
+    }
+    return SystemDerivative(
+        mass=derivative("mass", [system.mass for system in systems]),
+        damping=derivative("damping", [system.damping for system in systems]),
+        stiffness=derivative("stiffness", [system.stiffness for system in systems]),
+        load_mass=loads["mass"],
+        load_damping=loads["damping"],
+        load_stiffness=loads["stiffness"],
+        period=float(derivative("period", [[system.period] for system in systems])[0]),
+    )
+
+
+def parameter_value(model: Model, speed: float, parameter: str) -> float:
+    """Present value of a parameter of a model, or the speed for the name ``"speed"``."""
+    if parameter == SPEED:
+        return positive("speed", speed, "rad/s")
+    return value_of(model, parameter)
+
+
+def _system(model: Model, speed: float, parameter: str, value: float) -> PeriodicSystem:
+    if parameter == SPEED:
+        return model.system(value)
+    return replace_parameter(model, parameter, value).system(speed)
+
+
+def _same_shapes(first: PeriodicSystem, second: PeriodicSystem, parameter: str) -> None:
+    """Refuse a parameter that moves or reshapes the loads."""
+    for one, other in zip(first.loads, second.loads, strict=True):
+        for a, b in ((one.shape, other.shape), (one.weight, other.weight)):
+            if a is b:
+                continue
+            if (
+                a is None
+                or b is None
+                or a.coefficients.shape != b.coefficients.shape
+                or np.abs(a.breakpoints - b.breakpoints).max() > 1e-12
+                or np.abs(a.coefficients - b.coefficients).max() > 1e-12 * a.largest
+            ):
+                raise ValueError(
+                    f"shape vectors of the loads depend on {parameter}: only parameters of matrices, loads and the "
+                    "period have derivatives here"
+                )
+
+
+class _VariedFamily(Family):
+    """State and its derivative by each of several parameters, in place of the state alone.
+
+    Derivatives are by ln p, so that they have the size of the state.
+    """
+
+    def __init__(
+        self, system: PeriodicSystem, derivatives: Sequence[SystemDerivative], values: Array
+    ) -> None:
+        super().__init__([system])
+        if any(self.kicks):
+            raise ValueError(
+                "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
+                "whose derivatives are not known here"
+            )
+        self._single = Family([system])
+        self._derivatives = derivatives
+        self._values = values
+        # What product() takes for the number of systems and half the number of states.
+        self.systems = [system] * len(derivatives)
+        self.size = 2 * self._single.size
+
+    def state_matrices(self, fraction: Array) -> Array:
+        """Return [[B, 0], [dB/d ln p, B]] in scaled coordinates, shape (P, m, 4n, 4n)."""
+        single = self._single
+        n = single.size
+        plain = single.state_matrices(fraction)[0]
+        blocks = np.zeros((len(self._derivatives), fraction.size, 4 * n, 4 * n))
+        blocks[..., : 2 * n, : 2 * n] = plain
+        blocks[..., 2 * n :, 2 * n :] = plain
+        changes = self._changes(fraction)
+        for number, value in enumerate(self._values):
+            blocks[number, :, 2 * n :, : 2 * n] = value * (
+                single.scale @ changes[number] @ single.inverse_scale
+            )
+        return blocks
+
+    def _changes(self, fraction: Array) -> Array:
+        """d(T0 A)/dp of each parameter at fractions (m,), shape (P, m, 2n, 2n)."""
+        system = self._single.systems[0]
+        n, period = system.size, system.period
+        mass, damping, stiffness = (
+            np.broadcast_to(part[0], (fraction.size, n, n)) for part in self._single.assembled(fraction)
+        )
+        inverse = np.linalg.inv(mass)
+        accelerations = inverse @ np.concatenate([stiffness, damping], axis=-1)
+        dyads = [_dyads(load, fraction) for load in system.loads]
+        result = np.zeros((len(self._derivatives), fraction.size, 2 * n, 2 * n))
+        for number, by in enumerate(self._derivatives):
+            d_mass, d_damping, d_stiffness = (
+                np.broadcast_to(matrix, mass.shape).copy() for matrix in (by.mass, by.damping, by.stiffness)
+            )
+            # φ̇ = φ'/T0 and φ̈ = φ''/T0² change with the period too.
+            shorter = by.period / period
+            for i, (load, (plain, slope, bend)) in enumerate(zip(system.loads, dyads, strict=True)):
+                dm, dc, dk = by.load_mass[i], by.load_damping[i], by.load_stiffness[i]
+                d_mass += dm * plain
+                d_damping += dc * plain
+                d_stiffness += dk * plain
+                if load.rate == "total":
+                    d_stiffness += (dc - load.damping * shorter) / period * slope
+                    d_damping += 2.0 * (dm - load.mass * shorter) / period * slope
+                    d_stiffness += (dm - 2.0 * load.mass * shorter) / period**2 * bend
+            changed = np.concatenate([d_stiffness, d_damping], axis=-1) - d_mass @ accelerations
+            result[number, :, :n, n:] = by.period * np.eye(n)
+            result[number, :, n:, :] = -by.period * accelerations - period * inverse @ changed
+        return result
+
+
+def _dyads(load: ContactLoad, fraction: Array) -> tuple[Array, Array, Array]:
+    """Return w φφᵀ, w φφ'ᵀ and w φφ''ᵀ of a load at fractions (m,), each of shape (m, n, n)."""
+    phi = load.shape(fraction)
+    force = (phi if load.weight is None else phi * load.weight(fraction))[..., :, None]
+    parts = (phi, load.slope(fraction), load.curvature(fraction))
+    first, second, third = (force * part[..., None, :] for part in parts)
+    return first, second, third
+
+
+def transition_derivatives(
+    model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
+) -> tuple[Array, Array]:
+    """Floquet transition matrix and its derivatives by parameters.
+
+    Parameters
+    ----------
+    model : Model
+    speed : float
+        Speed [rad/s].
+    parameters : sequence of str
+        P names, as for :func:`system_derivative`.
+    method : Method, optional
+        :class:`facegear.floquet.multipliers.AdaptiveMagnus` if left out; collocation does not apply.
+
+    Returns
+    -------
+    matrix : array, shape (2n, 2n)
+        Φ(T0, 0) of the state (q, q̇).
+    derivatives : array, shape (P, 2n, 2n)
+        dΦ/dp; by the speed with the state taken at the changed period's end.
+
+    Raises
+    ------
+    TypeError, ValueError, ArithmeticError
+        As :func:`system_derivative`; ValueError for systems with velocity kicks.
+    """
+    integer_at_least("number of parameters", len(parameters), 1)
+    family, values = _varied(model, speed, parameters)
+    matrix, scaled = _split(family, method)
+    back, scale = family.inverse_scale, family.scale
+    return back @ matrix @ scale, back @ (scaled / values[:, None, None]) @ scale
+
+
+def _varied(model: Model, speed: float, parameters: Sequence[str]) -> tuple[_VariedFamily, Array]:
+    values = np.array([parameter_value(model, speed, name) for name in parameters])
+    derivatives = [system_derivative(model, speed, name) for name in parameters]
+    return _VariedFamily(model.system(speed), derivatives, values), values
+
+
+def _split(family: _VariedFamily, method: Method | None) -> tuple[Array, Array]:
+    """Φ and dΦ/d ln p, both in scaled coordinates."""
+    chosen = AdaptiveMagnus() if method is None else method
+    both = chosen.scaled_transition_matrices(family)
+    half = family.size
+    return both[0, :half, :half], both[:, half:, :half]
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Critical multiplier and growth rate of a model at a speed, with their derivatives by P parameters.
+
+    Attributes
+    ----------
+    parameters : tuple of str
+    values : array, shape (P,)
+        Present values of the parameters.
+    multiplier : complex
+        Multiplier λ of largest modulus; of a conjugate pair the one above the real axis.
+    multiplier_derivatives : complex array, shape (P,)
+        dλ/dp.
+    growth_rate : float
+        ρ = ln|λ|/T0 [1/s].
+    growth_rate_derivatives : array, shape (P,)
+        dρ/dp [1/s per unit of the parameter].
+    """
+
+    parameters: tuple[str, ...]
+    values: Array
+    multiplier: complex
+    multiplier_derivatives: ComplexArray
+    growth_rate: float
+    growth_rate_derivatives: Array
+
+    @property
+    def logarithmic_derivatives(self) -> Array:
+        """Derivatives of ln|λ|, shape (P,): what counts at a border, where the period plays no part."""
+        return np.asarray((self.multiplier_derivatives / self.multiplier).real, dtype=float)
+
+
+def sensitivity(
+    model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
+) -> Sensitivity:
+    """Differentiate the critical multiplier and the growth rate.
+
+    Parameters
+    ----------
+    model, speed, parameters, method
+        As for :func:`transition_derivatives`.
+
+    Returns
+    -------
+    Sensitivity
+
+    Raises
+    ------
+    ArithmeticError
+        If the critical multiplier is double or nearly so, or two different ones have the same modulus: neither has
+        a derivative. Where damping is absent that is so at every border.
+    TypeError, ValueError
+        As :func:`transition_derivatives`.
+    """
+    integer_at_least("number of parameters", len(parameters), 1)
+    family, values = _varied(model, speed, parameters)
+    matrix, scaled = _split(family, method)
+    critical, left, right = _critical(matrix, speed)
+    d_multiplier = np.einsum("i,pij,j->p", left, scaled, right) / values
+    period = model.system(speed).period
+    growth = math.log(abs(critical)) / period
+    d_period = np.array([by.period for by in family._derivatives])
+    d_growth = (d_multiplier / critical).real / period - growth * d_period / period
+    return Sensitivity(tuple(parameters), values, critical, d_multiplier, growth, d_growth)
+
+
+def _critical(matrix: Array, speed: float) -> tuple[complex, ComplexArray, ComplexArray]:
+    """Multiplier of largest modulus, its left eigenvector (a row) and its right one, their product 1."""
+    values, vectors = np.linalg.eig(matrix)
+    order = np.argsort(-np.abs(values) - 1e-12 * (values.imag > 0.0), kind="stable")
+    first = int(order[0])
+    critical = complex(values[first])
+    others = np.delete(values, first)
+    apart = np.abs(others - critical)
+    rivals = np.abs(others - critical.conjugate()) > _DOUBLE * abs(critical)
+    rivals &= np.abs(np.abs(others) - abs(critical)) <= _SAME_MODULUS * abs(critical)
+    if (apart <= _DOUBLE * abs(critical)).any() or rivals.any():
+        other = complex(others[np.where(rivals, 0.0, apart).argmin()])
+        raise ArithmeticError(
+            f"critical multiplier {critical:.9g} at {speed:.9g} rad/s has no derivative: another one, {other:.9g}, "
+            "coincides with it or has the same modulus"
+        )
+    left = np.linalg.inv(vectors)[first]
+    return critical, left.astype(complex), vectors[:, first].astype(complex)
+
+
+def border_derivatives(
+    model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
+) -> Array:
+    """Differentiate the speed of a border by parameters, dΩ/dp = −(∂|λ|/∂p)/(∂|λ|/∂Ω).
+
+    Parameters
+    ----------
+    model : Model
+    speed : float
+        A border of a tongue [rad/s], where max|λ| = 1.
+    parameters, method
+        As for :func:`transition_derivatives`; ``"speed"`` is not among them.
+
+    Returns
+    -------
+    array, shape (P,)
+        [rad/s per unit of the parameter].
+
+    Raises
+    ------
+    ValueError
+        If the speed is not a border: max|λ| differs from 1 by more than 1e-5.
+    ArithmeticError
+        As :func:`sensitivity`.
+    """
+    found = sensitivity(model, speed, (*parameters, SPEED), method)
+    if abs(abs(found.multiplier) - 1.0) > _BORDER:
+        raise ValueError(
+            f"speed must be a border of a tongue, where max|λ| = 1; at {speed:.9g} rad/s it is "
+            f"{abs(found.multiplier):.9g}"
+        )
+    change = found.logarithmic_derivatives
+    return np.asarray(-change[:-1] / change[-1], dtype=float)
+
+
+def width_derivatives(
+    model: Model, tongue: Tongue, parameters: Sequence[str], method: Method | None = None
+) -> Array:
+    """Differentiate the width of a tongue by parameters.
+
+    Parameters
+    ----------
+    model : Model
+    tongue : Tongue
+        From :func:`facegear.maps.tracing.tongues` of the same model, both borders inside the range looked at.
+    parameters, method
+        As for :func:`border_derivatives`.
+
+    Returns
+    -------
+    array, shape (P,)
+        [rad/s per unit of the parameter].
+
+    Raises
+    ------
+    ValueError, ArithmeticError
+        As :func:`border_derivatives`.
+    """
+    upper, lower = (border_derivatives(model, at, parameters, method) for at in (tongue.upper, tongue.lower))
+    return np.asarray(upper - lower, dtype=float)

@@ -1,0 +1,355 @@
+"""Tongues: all intervals of speed in which a model is unstable, however narrow.
+
+The speeds to look at come from :mod:`facegear.maps.scanning`; borders are roots of the growth between them.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq, minimize_scalar
+
+from facegear.floquet.labels import Combination, Kind, combination
+from facegear.floquet.models import Model, parameter_path, replace_parameter
+from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve, method_for
+from facegear.floquet.multipliers import Method, multipliers
+from facegear.floquet.periodic import PeriodicSystem, rigid_motions
+from facegear.floquet.piecewise import Array
+from facegear.maps.parallel import computed, parts_of
+from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
+from facegear.support.parameters import ascending, finite_array, positive, within
+
+_KINDS: tuple[Kind, ...] = get_args(Kind)
+
+# A rigid-body motion drifts: its double multiplier 1 is known to the root of rounding at best.
+_DRIFT = 1e-6
+# Time of a search by points of its first grid and size d of the matrices, points · factor · d^power [s]: measured with
+# disks of 14 to 68 coordinates at 200 to 600 rpm. Pairs of multipliers that meet add samples with d, the eigenvalue
+# problem of each adds the rest.
+_SECONDS, _POWER = 3.5e-8, 3.2
+
+# Samples of speed closer than this, relative, are one where a maximum is looked for.
+_APART = 1e-5
+
+
+@dataclass(frozen=True)
+class Tongue:
+    """Interval of speed in which the growth rate is positive.
+
+    Attributes
+    ----------
+    lower, upper : float
+        Borders [rad/s], or ends of the range looked at.
+    peak : float
+        Speed of the largest growth rate [rad/s].
+    growth_rate : float
+        Growth rate there [1/s].
+    combination : Combination
+        Modes and order of the resonance at the peak.
+    """
+
+    lower: float
+    upper: float
+    peak: float
+    growth_rate: float
+    combination: Combination = field(repr=False)
+
+    @property
+    def label(self) -> str:
+        """Modes and order, such as "(1+2)/1"; as :attr:`facegear.floquet.hsu.ResonanceBand.label`."""
+        return self.combination.label
+
+    @property
+    def width(self) -> float:
+        """Width [rad/s]."""
+        return self.upper - self.lower
+
+
+@dataclass(frozen=True)
+class TongueSection:
+    """Tongues at one value of a swept parameter."""
+
+    value: float
+    tongues: tuple[Tongue, ...]
+
+
+def tongues(
+    model: Model,
+    lowest_speed: float,
+    highest_speed: float,
+    *,
+    method: Method | None = None,
+    threshold: float = 1e-8,
+    hints: Sequence[float] = (),
+    progress: bool | None = None,
+) -> tuple[Tongue, ...]:
+    """All intervals of speed in which a model is unstable.
+
+    Parameters
+    ----------
+    model : Model
+        Anything with a method ``system(speed)``.
+    lowest_speed, highest_speed : float
+        Range looked at [rad/s].
+    method : Method, optional
+        Method of :mod:`facegear.floquet.multipliers`; if left out, contact-force collocation where it applies, else
+        adaptive Magnus.
+    threshold : float
+        Growth in a period, max|λ| − 1, from which a speed counts as unstable [-]. Damping keeps stable multipliers
+        clearly inside the unit circle; without damping they lie on it, and rounding alone must not look like growth.
+    hints : sequence of float
+        Further speeds [rad/s] around which to look.
+    progress : bool, optional
+        Show how many transition matrices have been looked at, and before that about how long it will take
+        (:func:`search_seconds`); if left out, only on a terminal. An interruption (Ctrl-C) ends the search at once.
+
+    Returns
+    -------
+    tuple of Tongue
+        Ascending. Borders are where max|λ| − 1 passes the threshold, to a relative 1e-9 of the speed.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the range is empty or not positive, or a parameter is not valid, or the model has a rigid-body motion and
+        the threshold is below what that leaves of a multiplier.
+    ArithmeticError
+        If transition matrices do not vary smoothly with speed, or are not known well enough for the threshold.
+    """
+    lowest_speed = positive("lowest_speed", lowest_speed, "rad/s")
+    highest_speed = positive("highest_speed", highest_speed, "rad/s")
+    if lowest_speed >= highest_speed:
+        raise ValueError(
+            f"highest_speed must be greater than lowest_speed, {lowest_speed:.6g} rad/s; got {highest_speed!r} rad/s"
+        )
+    threshold = within("threshold", threshold, 1e-12, 1e-2)
+    hints = finite_array("hints", hints).tolist() if len(hints) else []
+    if threshold < _DRIFT:
+        _refuse_rigid_motion(model.system(highest_speed))
+    chosen = method_for(model, lowest_speed, highest_speed) if method is None else method
+    from tqdm.auto import tqdm
+
+    # tqdm itself takes a notebook for a terminal.
+    shown = sys.stderr.isatty() if progress is None else progress
+    about = f"tongues, about {search_seconds(model, lowest_speed, highest_speed):.0f} s" if shown else ""
+    with tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar:
+        curve = MultiplierCurve.of(model, lowest_speed, highest_speed, chosen, bar.update)
+        if curve.error > threshold:
+            raise ArithmeticError(
+                f"multipliers are known to {curve.error:.2g} only, rounding counted, which is not enough for a "
+                f"threshold of {threshold:.2g}: give a larger one, or for strong dampers a method such as "
+                "facegear.floquet.radau.Radau"
+            )
+        scan = scan_of(curve.live, threshold, hints)
+    return tuple(_tongue(model, chosen, *run) for run in _runs(curve.live, scan, threshold))
+
+
+def search_seconds(model: Model, lowest_speed: float, highest_speed: float) -> float:
+    """Estimate how long :func:`tongues` takes for a model, without computing any of it.
+
+    Parameters
+    ----------
+    model, lowest_speed, highest_speed
+        As for :func:`tongues`.
+
+    Returns
+    -------
+    float
+        [s] on one core of a processor of 2023; right within a factor of three or so for disks. It goes with the
+        third power of the number of coordinates, and with the angle by which the fastest motion turns in a period.
+
+    Examples
+    --------
+    >>> from facegear.mechanics.cases import FIGURES
+    >>> from facegear.floquet.models import replace_parameter
+    >>> small = FIGURES["4.4a"].model()
+    >>> large = replace_parameter(small, "nodal_diameters", 6)
+    >>> search_seconds(large, 50.0, 70.0) > 4.0 * search_seconds(small, 50.0, 70.0)
+    True
+    """
+    lowest_speed, highest_speed = ascending("speed_range", (lowest_speed, highest_speed), "rad/s")
+    motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
+    size = 2 * model.system(highest_speed).size
+    samples = motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES).size
+    return float(samples * _SECONDS * size**_POWER)
+
+
+def _refuse_rigid_motion(system: PeriodicSystem) -> None:
+    motions = rigid_motions(system)
+    if motions.size == 0:
+        return
+    shown = "; ".join(
+        ", ".join(f"{part:.3g}" for part in motion / np.abs(motion).max()) for motion in motions.T
+    )
+    raise ValueError(
+        f"model has {motions.shape[1]} rigid-body motion(s), along ({shown}), that no spring, damper or load meets: "
+        "its double multiplier 1 is known to 1e-8 at best; take it out with facegear.WithoutRigidMotion(model), which "
+        "changes no other multiplier"
+    )
+
+
+def borders(
+    model: Model,
+    parameter: str,
+    values: ArrayLike,
+    lowest_speed: float,
+    highest_speed: float,
+    *,
+    method: Method | None = None,
+    threshold: float = 1e-8,
+    jobs: int = -1,
+    progress: bool | None = None,
+    cache_directory: str | os.PathLike[str] | None = None,
+) -> tuple[TongueSection, ...]:
+    """Tongues at each of several values of a parameter, for drawing over a map.
+
+    Parameters
+    ----------
+    model, lowest_speed, highest_speed, method, threshold
+        As for :func:`tongues`.
+    parameter : str
+        Name of the swept parameter, as for :func:`facegear.maps.stability_map.stability_map`.
+    values : array_like, shape (V,)
+        Values of the parameter.
+    jobs, progress, cache_directory
+        As for :func:`facegear.maps.stability_map.stability_map`; what is kept are the tongues of each value.
+
+    Returns
+    -------
+    tuple of TongueSection
+        One a value, in the order of `values`. Each value is searched on its own first. Tongues of its neighbours in
+        `values` that it lacks are then looked for once more at their peaks.
+
+    Raises
+    ------
+    TypeError, ValueError, ArithmeticError
+        As :func:`tongues`, or for an unknown parameter.
+    """
+    array = finite_array("values", values)
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"values must list at least one value of the parameter, got shape {array.shape}")
+    parameter_path(model, parameter)
+    searches = [
+        _Search(replace_parameter(model, parameter, value), lowest_speed, highest_speed, method, threshold)
+        for value in array.tolist()
+    ]
+
+    def sections(tasks: Sequence[_Search]) -> list[tuple[Tongue, ...]]:
+        tables = dict(computed(tasks, "tongue borders", jobs, progress, cache_directory))
+        return [_from_table(tables[i]) for i in range(len(tasks))]
+
+    found = sections(searches)
+    missing = {i: peaks for i in range(array.size) if (peaks := _missing(found, i))}
+    again = sections([replace(searches[i], hints=tuple(peaks)) for i, peaks in missing.items()])
+    for i, part in zip(missing, again, strict=True):
+        found[i] = part
+    return tuple(TongueSection(value, part) for value, part in zip(array.tolist(), found, strict=True))
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Tongues of one model, as a task whose result is an array."""
+
+    model: Model
+    lowest_speed: float
+    highest_speed: float
+    method: Method | None
+    threshold: float
+    hints: tuple[float, ...] = ()
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on: of the model's code, what it makes of both ends and the middle."""
+        yield repr(self)
+        middle = (self.lowest_speed + self.highest_speed) / 2.0
+        for speed in (self.lowest_speed, middle, self.highest_speed):
+            yield from parts_of(self.model.system(speed))
+
+    def compute(self) -> Array:
+        """Borders, peak, growth rate, modes, kind and order, one row a tongue."""
+        found = tongues(
+            self.model,
+            self.lowest_speed,
+            self.highest_speed,
+            method=self.method,
+            threshold=self.threshold,
+            hints=self.hints,
+            progress=False,
+        )
+        rows = [
+            (t.lower, t.upper, t.peak, t.growth_rate, c.k, c.j, _KINDS.index(c.kind), c.order)
+            for t in found
+            for c in (t.combination,)
+        ]
+        return np.array(rows, dtype=float).reshape(-1, 8)
+
+
+def _from_table(table: Array) -> tuple[Tongue, ...]:
+    found = []
+    for *speeds, k, j, kind, order in table.tolist():
+        lower, upper, peak, growth = speeds
+        modes = Combination(int(k), int(j), _KINDS[int(kind)], int(order))
+        found.append(Tongue(lower, upper, peak, growth, modes))
+    return tuple(found)
+
+
+def _missing(found: Sequence[tuple[Tongue, ...]], number: int) -> list[float]:
+    """Peaks of a neighbour's tongues that have no counterpart of the same label."""
+    own = {tongue.label for tongue in found[number]}
+    neighbours = [found[i] for i in (number - 1, number + 1) if 0 <= i < len(found)]
+    return [tongue.peak for part in neighbours for tongue in part if tongue.label not in own]
+
+
+def _runs(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[tuple[float, float, float]]:
+    """Lower border, upper border and peak of every run of unstable samples."""
+
+    def level(speed: float) -> float:
+        return float(curve.spectral_radii(np.array([speed]))[0]) - 1.0 - threshold
+
+    def border(first: int, second: int) -> float:
+        return float(
+            brentq(level, scan.speeds[first], scan.speeds[second], xtol=SPEED_TOLERANCE * curve.lowest_speed)
+        )
+
+    unstable = scan.radii > 1.0 + threshold
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], unstable, [False]]).astype(int)))
+    runs = []
+    last = scan.speeds.size - 1
+    for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        lower = border(start - 1, start) if start > 0 else curve.lowest_speed
+        upper = border(stop - 1, stop) if stop <= last else curve.highest_speed
+        growth = np.log(scan.radii[start:stop]) * scan.speeds[start:stop]
+        top = start + int(np.argmax(growth))
+        # Samples that all but coincide, apart by rounding, do not bracket a maximum.
+        apart = _APART * scan.speeds[top]
+        before = int(np.searchsorted(scan.speeds, scan.speeds[top] - apart)) - 1
+        after = int(np.searchsorted(scan.speeds, scan.speeds[top] + apart, side="right"))
+        low = max(lower, float(scan.speeds[max(before, 0)]))
+        high = min(upper, float(scan.speeds[min(after, last)]))
+        runs.append((lower, upper, _peak(curve, low, high, float(scan.speeds[top]))))
+    return runs
+
+
+def _peak(curve: MultiplierCurve, low: float, high: float, best: float) -> float:
+    """Speed of the largest growth rate between two speeds, no worse than at `best`."""
+
+    def growth(speed: float) -> float:
+        return float(np.log(curve.spectral_radii(np.array([speed]))[0])) * speed
+
+    if low >= high:
+        return best
+    result = minimize_scalar(
+        lambda speed: -growth(speed), bounds=(low, high), method="bounded", options={"xatol": 1e-9 * high}
+    )
+    return float(result.x) if growth(float(result.x)) >= growth(best) else best
+
+
+def _tongue(model: Model, method: Method, lower: float, upper: float, peak: float) -> Tongue:
+    system = model.system(peak)
+    growth = float(np.log(np.abs(multipliers(system, method)[0])) / system.period)
+    return Tongue(lower, upper, peak, growth, combination(system, method))

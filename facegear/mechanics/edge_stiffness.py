@@ -1,0 +1,224 @@
+"""Stiffness of the disk against bending in the plane stress of a rim force, K_f of section 6.3."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from facegear.floquet.lobatto import values_to_coefficients
+from facegear.mechanics.disk import unit_shape
+from facegear.mechanics.inplane import EdgeLoadStress, collocation_points, fastest_speed
+from facegear.mechanics.plate import Body, plate_quadrature
+from facegear.support.parameters import FloatArray, nonnegative, one_of, positive, within
+
+Following = Literal["follower", "dead"]
+
+# K_f as a series in the square of the speed, from 0 to this speed [rad/s] or 2, 4, 8 ... times it.
+_LOWEST_TOP = 128.0
+_SERIES_DEGREE = 8
+
+
+def complete_harmonics(body: Body) -> int:
+    """Largest harmonic that can couple two modes of a body, 2N."""
+    return 2 * body.nodal_diameters
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """Basis functions at the nodes of a quadrature over the disk, and along its rim, on unit outer radius.
+
+    Values and slopes have the shape (radii, angles, n) on the disk and (angles, n) along the rim. `weights` (radii,)
+    are those of ∫ x dx, averages over the angles are sums over their number.
+    """
+
+    x: FloatArray
+    weights: FloatArray
+    angles: FloatArray
+    by_radius: FloatArray
+    by_angle: FloatArray
+    rim: FloatArray
+    rim_by_radius: FloatArray
+    rim_by_angle: FloatArray
+
+
+@lru_cache(maxsize=64)
+def _grid(body: Body, harmonics: int) -> _Grid:
+    x, weights = plate_quadrature(body.bore_ratio)
+    # Products of two modes and a harmonic have at most 2N + K waves: with more points than that sums are exact.
+    count = complete_harmonics(body) + harmonics + 1
+    angles = 2 * np.pi * np.arange(count) / count
+
+    modes, radii, rim = body.modes, x[:, np.newaxis], np.ones(count)
+    return _Grid(
+        x,
+        weights,
+        angles,
+        unit_shape(modes, radii, angles, by_radius=1),
+        unit_shape(modes, radii, angles, by_angle=1),
+        unit_shape(modes, rim, angles),
+        unit_shape(modes, rim, angles, by_radius=1),
+        unit_shape(modes, rim, angles, by_angle=1),
+    )
+
+
+def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower") -> FloatArray:
+    """Stiffness K_f of the disk in the plane field of a force at its rim (6-26, 6-27), real basis.
+
+    Parameters
+    ----------
+    stress : EdgeLoadStress
+        The field; harmonics beyond 2N couple no modes and leave K_f as it is.
+    following : {"follower", "dead"}
+        Whether the force stays in the tangent plane of the bent rim, as the dissertation assumes, or keeps its
+        direction in space. K_f of a dead force is symmetric.
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+        K_f [1/s²], divided by 2πρh as all matrices of (4-8); coordinates as
+        :func:`facegear.mechanics.disk.coordinates`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind.
+
+    Notes
+    -----
+    The weak form of the operator (6-23) is the work of the stresses on the slopes, symmetric, and the transverse part
+    of the rim load times the deflection at the rim, which is what a follower force adds.
+    """
+    if not isinstance(stress, EdgeLoadStress):
+        raise TypeError(f"stress must be an EdgeLoadStress, got {stress!r}")
+    one_of("following", following, ("follower", "dead"))
+    body = stress.body
+    harmonics = min(stress.harmonics, complete_harmonics(body))
+    grid = _grid(body, harmonics)
+    used = EdgeLoadStress(body, stress.force, stress.speed, harmonics, stress.direction, stress.angle)
+    radial, shear, hoop = used.field(grid.x[:, np.newaxis] * body.outer_radius, grid.angles)
+    weights = grid.weights[:, np.newaxis] / grid.angles.size
+    x = grid.x[:, np.newaxis]
+    # σ·grad φ: radial and circumferential part
+    first = np.einsum("ra,ran->ran", weights * radial, grid.by_radius)
+    first += np.einsum("ra,ran->ran", weights * shear / x, grid.by_angle)
+    second = np.einsum("ra,ran->ran", weights * shear / x, grid.by_radius)
+    second += np.einsum("ra,ran->ran", weights * hoop / x**2, grid.by_angle)
+    stiffness = np.tensordot(grid.by_radius, first, axes=((0, 1), (0, 1)))
+    stiffness += np.tensordot(grid.by_angle, second, axes=((0, 1), (0, 1)))
+    if following == "follower":
+        radial, shear, _ = used.field(body.outer_radius, grid.angles)
+        slope = radial[:, np.newaxis] * grid.rim_by_radius + shear[:, np.newaxis] * grid.rim_by_angle
+        stiffness -= grid.rim.T @ slope / grid.angles.size
+    found: FloatArray = stiffness / (body.material.density * body.outer_radius**2)
+    return found
+
+
+def strong_form_stiffness(stress: EdgeLoadStress) -> FloatArray:
+    """K_f of a follower force on a disk at rest from the strong form of (6-23), a second route to the same matrix.
+
+    Stresses in equilibrium leave -σ : ∇∇w of the operator. It takes second derivatives of the modes where the weak
+    form takes slopes, and no term at the rim.
+
+    Parameters
+    ----------
+    stress : EdgeLoadStress
+        At speed 0: with inertia the stresses alone are not in equilibrium.
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+        As :func:`edge_load_stiffness`.
+
+    Raises
+    ------
+    ValueError
+        If the speed is not 0.
+    """
+    if stress.speed != 0.0:
+        raise ValueError(f"stress must be that of a disk at rest, got speed={stress.speed!r} rad/s")
+    body = stress.body
+    x, weights = plate_quadrature(body.bore_ratio)
+    count = complete_harmonics(body) + stress.harmonics + 1
+    angles, x = 2 * np.pi * np.arange(count) / count, x[:, np.newaxis]
+
+    def shape(by_radius: int, by_angle: int) -> FloatArray:
+        return unit_shape(body.modes, x, angles, by_radius=by_radius, by_angle=by_angle)
+
+    radius = x[:, :, np.newaxis]
+    radial, shear, hoop = (part[:, :, np.newaxis] for part in stress.field(x * body.outer_radius, angles))
+    curvature = radial * shape(2, 0)
+    curvature = curvature + 2 * shear * (shape(1, 1) / radius - shape(0, 1) / radius**2)
+    curvature = curvature + hoop * (shape(1, 0) / radius + shape(0, 2) / radius**2)
+    weighted = shape(0, 0) * (weights / count)[:, np.newaxis, np.newaxis]
+    work = np.tensordot(weighted, curvature, axes=((0, 1), (0, 1)))
+    found: FloatArray = -work / (body.material.density * body.outer_radius**2)
+    return found
+
+
+def unit_stiffness(
+    body: Body, speed: float, harmonics: int, following: Following, angles: tuple[float, ...]
+) -> FloatArray:
+    """Sum of K_f of equal tangential forces of 1 N at several angles [1/(s² N)].
+
+    Speed enters by its square, and weakly: a series through nine speeds, kept, is exact to rounding.
+
+    Parameters
+    ----------
+    body : Body
+    speed : float
+        Ω2 [rad/s].
+    harmonics : int
+        Largest k.
+    following : {"follower", "dead"}
+    angles : tuple of float
+        Of the forces [rad].
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+    """
+    limit = fastest_speed(body)
+    speed = within("speed", speed, 0.0, limit, "rad/s", hint="rpm?")
+    octave = max(0, math.ceil(math.log2(speed / _LOWEST_TOP))) if speed > 0.0 else 0
+    top = min(_LOWEST_TOP * 2**octave, limit)
+    series = _stiffness_series(body, top, harmonics, following, angles)
+    found: FloatArray = chebyshev.chebval(2 * (speed / top) ** 2 - 1, series)
+    return found
+
+
+@lru_cache(maxsize=256)
+def _stiffness_series(
+    body: Body, top: float, harmonics: int, following: Following, angles: tuple[float, ...]
+) -> FloatArray:
+    """Chebyshev coefficients of the sum of K_f in Ω2² from 0 to the square of `top`, shape (9, n, n)."""
+    t, _ = collocation_points(_SERIES_DEGREE)
+    values = []
+    for speed in top * np.sqrt((t + 1) / 2):
+        stresses = (EdgeLoadStress(body, 1.0, float(speed), harmonics, angle=angle) for angle in angles)
+        values.append(np.sum([edge_load_stiffness(stress, following) for stress in stresses], axis=0))
+    return np.tensordot(values_to_coefficients(_SERIES_DEGREE), np.stack(values), axes=1)
+
+
+def driving_force(body: Body, power: float, pinion_speed: float) -> float:
+    """Tangential force at the pinion's pitch circle, F_t = P/(Ω1 r_p) [N] (4-21).
+
+    Parameters
+    ----------
+    body : Body
+    power : float
+        P [W], 0 or greater.
+    pinion_speed : float
+        Ω1 at that power [rad/s].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not a number in its range.
+    """
+    speed = positive("power_speed", pinion_speed, "rad/s")
+    return nonnegative("power", power, "W") / (speed * body.drive.pitch_radius)

@@ -1,0 +1,377 @@
+"""Torsional vibration of a gearbox with a face-gear drive (chapter 7).
+
+Pinion, face gear and load are rigid bodies on torsional springs and dampers; the input side turns at a constant
+speed. The coordinates q = (χ1, χ2, χo) are their elastic deviation angles (7-9). Every tooth pair is a spring and
+damper on the mesh deformation g = φᵀq with φ = (r_b1, −r cos α_c, 0) (7-3), a rank-one load with its time
+derivative taken through the moving contact point, which makes the stiffness (7-13) non-symmetric.
+
+The arm r cos α_c of (7-3) holds the pressure angle at α_c while the contact point moves along the tooth. On the
+true, conjugate tooth the local pressure angle changes with it, and the equation of meshing leaves a constant arm,
+r_b1 N2/N1 (:func:`facegear.symbolic.torsional.conjugate_arm`). `Torsional` follows the printed arm unless told
+otherwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
+from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import ContactPath, SkewLine, checked_contact_ratio, mesh_period
+from facegear.support.parameters import (
+    STEEL,
+    FloatArray,
+    Material,
+    finite_array,
+    keep,
+    nonnegative,
+    one_of,
+    positive,
+    within,
+)
+
+Arm = Literal["printed", "conjugate"]
+Path = Literal["skew_line", "contact_path", "centroid"]
+
+DEDENDUM = 1.25
+"""Dedendum H over addendum a_g in the model of the tooth as a cantilever (7-1)."""
+
+
+def tooth_stiffness(drive: Drive, material: Material = STEEL) -> float:
+    """Stiffness k_t of a tooth along the line of action, as a cantilever loaded at its tip (7-1).
+
+    Parameters
+    ----------
+    drive : Drive
+        Its circular pitch π m_d, addendum m_d, face width L and pressure angle.
+    material : Material, optional
+
+    Returns
+    -------
+    float
+        E c_p³ L/(32 (a_g + H)³ cos α_c), H = 1.25 a_g [N/m].
+    """
+    height = (1.0 + DEDENDUM) * drive.module
+    pitch = math.pi * drive.module
+    modulus = material.youngs_modulus
+    return modulus * pitch**3 * drive.face_width / (32.0 * height**3 * math.cos(drive.pressure_angle))
+
+
+def mesh_stiffness(drive: Drive, correction_factor: float, material: Material = STEEL) -> float:
+    """Average mesh stiffness k_m of a tooth pair, two teeth in series (7-2).
+
+    Parameters
+    ----------
+    drive : Drive
+    correction_factor : float
+        c_f, from above 0 to 1: what gear bodies and bearings leave of the stiffness of the teeth.
+    material : Material, optional
+
+    Returns
+    -------
+    float
+        c_f k_t/2 [N/m].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the factor is not a number above 0 and up to 1.
+
+    Examples
+    --------
+    >>> f"{mesh_stiffness(Drive(31, 107, 3.175e-3), 0.5):.3g}"
+    '1.58e+08'
+    """
+    positive("correction_factor", correction_factor)
+    return within("correction_factor", correction_factor, 0.0, 1.0) * tooth_stiffness(drive, material) / 2.0
+
+
+def cylinder_inertia(radius: float, height: float, density: float = STEEL.density) -> float:
+    """Moment of inertia of a solid cylinder about its axis, ½πρ h r⁴ [kg m²].
+
+    Parameters
+    ----------
+    radius, height : float
+        r and h [m].
+    density : float, optional
+        ρ [kg/m³].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value is not a number above 0.
+    """
+    radius, height = positive("radius", radius, "m"), positive("height", height, "m")
+    return math.pi * positive("density", density, "kg/m³") * height * radius**4 / 2.0
+
+
+def natural_speed(drive: Drive, frequency: ArrayLike) -> FloatArray:
+    """Speed of the face gear at which the mesh frequency equals a natural frequency (7-20).
+
+    Parameters
+    ----------
+    drive : Drive
+    frequency : array_like
+        ω_n [rad/s].
+
+    Returns
+    -------
+    ndarray
+        ω_n/N2 [rad/s].
+    """
+    return np.asarray(finite_array("frequency", frequency, "rad/s") / drive.gear_teeth)
+
+
+@dataclass(frozen=True)
+class Gearbox:
+    """Inertias, shafts and mesh of a gearbox with one spur pinion and one face gear (7-4 to 7-6).
+
+    Parameters
+    ----------
+    drive : Drive
+        Teeth of pinion and face gear.
+    pinion_inertia, gear_inertia, load_inertia : float
+        J1, J2, Jo [kg m²], greater than 0. The pinion's may lie from 1/100 to 100 times that of a solid steel
+        cylinder as wide as the teeth with the base radius.
+    mesh_stiffness : float
+        k_m of a tooth pair [N/m], from 1/500 to 20 times that of two steel teeth in series.
+    mesh_damping : float
+        c_m of a tooth pair [N s/m], from 0 to 0.01 s times k_m.
+    input_stiffness, output_stiffness : float
+        k1, k2 of the shafts [N m/rad], greater than 0.
+    input_damping, output_damping : float
+        c1, c2 of the shafts [N m s/rad], 0 or greater.
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh. Default None: Tregold's, as printed, that of whatever `drive`
+        there is (`mesh_contact_ratio`); `drive.geometric_contact_ratio` is that of the true sweep. A number stays
+        when the drive is replaced.
+
+    Raises
+    ------
+    TypeError, ValueError
+        A value of the wrong kind or outside its range.
+    """
+
+    drive: Drive
+    pinion_inertia: float
+    gear_inertia: float
+    load_inertia: float
+    mesh_stiffness: float
+    mesh_damping: float
+    input_stiffness: float
+    input_damping: float
+    output_stiffness: float
+    output_damping: float
+    contact_ratio: float | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.drive, Drive):
+            raise TypeError(f"drive must be a Drive, got {self.drive!r}")
+        inertia, stiffness = _steel_scales(self.drive)
+        mesh = within("mesh_stiffness", self.mesh_stiffness, stiffness / 500.0, stiffness * 20.0, "N/m")
+        keep(
+            self,
+            pinion_inertia=within(
+                "pinion_inertia", self.pinion_inertia, inertia / 100.0, inertia * 100.0, "kg m²"
+            ),
+            gear_inertia=positive("gear_inertia", self.gear_inertia, "kg m²"),
+            load_inertia=positive("load_inertia", self.load_inertia, "kg m²"),
+            mesh_stiffness=mesh,
+            mesh_damping=within("mesh_damping", self.mesh_damping, 0.0, 0.01 * mesh, "N s/m"),
+            input_stiffness=positive("input_stiffness", self.input_stiffness, "N m/rad"),
+            input_damping=nonnegative("input_damping", self.input_damping, "N m s/rad"),
+            output_stiffness=positive("output_stiffness", self.output_stiffness, "N m/rad"),
+            output_damping=nonnegative("output_damping", self.output_damping, "N m s/rad"),
+        )
+        # Fails here rather than at the first use if the contact ratio is not valid.
+        ratio = self.mesh_contact_ratio
+        keep(self, contact_ratio=None if self.contact_ratio is None else ratio)
+
+    @property
+    def mesh_contact_ratio(self) -> float:
+        """Mesh periods that a tooth pair stays in mesh: `contact_ratio` if given, else Tregold's (3-23 to 3-26)."""
+        return checked_contact_ratio(self.drive, self.contact_ratio)
+
+    @property
+    def mass_matrix(self) -> FloatArray:
+        """M of (7-11), shape (3, 3) [kg m²]."""
+        return np.diag([self.pinion_inertia, self.gear_inertia, self.load_inertia])
+
+    @property
+    def damping_matrix(self) -> FloatArray:
+        """C0 of the shafts (7-12), shape (3, 3) [N m s/rad]."""
+        return _shafts(self.input_damping, self.output_damping)
+
+    @property
+    def stiffness_matrix(self) -> FloatArray:
+        """K0 of the shafts (7-13), shape (3, 3) [N m/rad]."""
+        return _shafts(self.input_stiffness, self.output_stiffness)
+
+
+@lru_cache(maxsize=64)
+def _steel_scales(drive: Drive) -> tuple[float, float]:
+    """Moment of inertia of a steel pinion [kg m²] and stiffness of a pair of steel teeth [N/m]."""
+    return cylinder_inertia(drive.base_radius, drive.face_width), tooth_stiffness(drive) / 2.0
+
+
+def _shafts(first: float, second: float) -> FloatArray:
+    return np.array([[first, 0.0, 0.0], [0.0, second, -second], [0.0, -second, second]])
+
+
+class _Mesh(NamedTuple):
+    """What the shape vectors of the tooth pairs depend on."""
+
+    drive: Drive
+    contact_ratio: float
+    arm: Arm
+    path: Path
+
+
+@lru_cache(maxsize=256)
+def _shapes(mesh: _Mesh) -> tuple[PiecewiseChebyshev, ...]:
+    """Shape vector of each tooth pair, numbered by age, against t/T0."""
+    drive = mesh.drive
+    skew, contact = SkewLine(drive, mesh.contact_ratio), ContactPath(drive, mesh.contact_ratio)
+    moving = mesh.arm == "printed"
+    breakpoints = contact.breakpoints if moving and mesh.path != "skew_line" else skew.breakpoints
+    edges = (*breakpoints, 1.0)
+
+    def arms(pair: int, piece: int, local: FloatArray) -> FloatArray:
+        """Arm about the face-gear axis [m] while the pair is in contact; `local` from -1 to 1."""
+        if not moving:
+            return np.full(local.shape, drive.base_radius / drive.gear_ratio)
+        if mesh.path == "skew_line":
+            radius = skew.pair_states_on_piece(piece, local).radius[pair]
+        elif mesh.path == "contact_path":
+            radius = contact.pair_states_on_piece(piece, local).radius[pair]
+        else:
+            radius = contact.centroid_on_piece(piece, local).radius
+        return np.asarray(radius * math.cos(drive.pressure_angle), dtype=float)
+
+    def shape(pair: int) -> PiecewiseChebyshev:
+        def function(fraction: FloatArray, piece: int) -> FloatArray:
+            start, end = edges[piece], edges[piece + 1]
+            vector = np.zeros((fraction.size, 3))
+            if (start + end) / 2.0 + pair < mesh.contact_ratio:
+                local = np.clip((2.0 * fraction - start - end) / (end - start), -1.0, 1.0)
+                vector[:, 0] = drive.base_radius
+                vector[:, 1] = -arms(pair, piece, local)
+            return vector
+
+        return PiecewiseChebyshev.fit(function, breakpoints)
+
+    return tuple(shape(pair) for pair in range(skew.pairs))
+
+
+@lru_cache(maxsize=256)
+def _mean_dyad(mesh: _Mesh) -> FloatArray:
+    """Mean over the mesh period of Σ φφᵀ, shape (3, 3) [m²]."""
+    shapes = _shapes(mesh)
+
+    def dyads(fraction: FloatArray) -> FloatArray:
+        vectors = np.stack([shape(fraction) for shape in shapes])
+        return np.asarray(np.einsum("pmi,pmj->mij", vectors, vectors))
+
+    mean = fourier_series(dyads, shapes[0].breakpoints, 1).mean
+    mean.setflags(write=False)
+    return mean
+
+
+@dataclass(frozen=True)
+class Torsional:
+    """Torsional vibration of a gearbox (7-10 to 7-13).
+
+    Parameters
+    ----------
+    box : Gearbox
+    arm : {"printed", "conjugate"}
+        Moment arm of the mesh force about the face-gear axis: r(t) cos α_c as printed in (7-3), or r_b1 N2/N1, the
+        constant arm of the conjugate tooth.
+    path : {"skew_line", "contact_path", "centroid"}
+        Radius r(t) of the printed arm: of each pair on the skew line (3-22) as printed, of each pair's true contact
+        point, or of the centroid of all contact points (3-21). The conjugate arm does not depend on it.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind.
+
+    Examples
+    --------
+    >>> from facegear.geometry.drive import Drive
+    >>> box = Gearbox(Drive(31, 107, 3.175e-3), 1.6e-3, 0.15, 0.17, 1.58e8, 1.58e3, 1.42e6, 14.2, 1.58e7, 158.0)
+    >>> Torsional(box).system(speed=50.0).size
+    3
+    """
+
+    box: Gearbox
+    arm: Arm = "printed"
+    path: Path = "skew_line"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.box, Gearbox):
+            raise TypeError(f"box must be a Gearbox, got {self.box!r}")
+        one_of("arm", self.arm, ("printed", "conjugate"))
+        one_of("path", self.path, ("skew_line", "contact_path", "centroid"))
+        if self.arm == "printed" and self.path != "skew_line":
+            path = ContactPath(self.box.drive, self.box.mesh_contact_ratio)
+            path.require_finite_speed(f"path = {self.path!r}")
+            if self.path == "centroid":
+                path.require_slow_centroid("path = 'centroid'")
+
+    @property
+    def _mesh(self) -> _Mesh:
+        return _Mesh(self.box.drive, self.box.mesh_contact_ratio, self.arm, self.path)
+
+    @property
+    def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
+        """Shape vector φ of each tooth pair against t/T0 [m], the youngest pair first; 0 out of contact (7-3)."""
+        return _shapes(self._mesh)
+
+    @property
+    def mean_stiffness(self) -> FloatArray:
+        """Mean of K(t) with the face gear at rest, U(0) of (7-16) without its term in ṙ, shape (3, 3)."""
+        return np.asarray(self.box.stiffness_matrix + self.box.mesh_stiffness * _mean_dyad(self._mesh))
+
+    def natural_frequencies(self) -> FloatArray:
+        """Natural frequencies of the mean system at rest (7-17 with Ω2 = 0), ascending, shape (3,) [rad/s]."""
+        root = 1.0 / np.sqrt(np.diag(self.box.mass_matrix))
+        squares = np.linalg.eigvalsh(root[:, np.newaxis] * self.mean_stiffness * root)
+        return np.asarray(np.sqrt(squares), dtype=float)
+
+    def natural_speeds(self) -> FloatArray:
+        """Speeds of the face gear at which the mesh frequency is a natural one (7-20), shape (3,) [rad/s]."""
+        return natural_speed(self.box.drive, self.natural_frequencies())
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed (7-10).
+
+        Parameters
+        ----------
+        speed : float
+            Ω2 of the face gear [rad/s], greater than 0.
+
+        Returns
+        -------
+        PeriodicSystem
+            Three coordinates, one load for each tooth pair, the period T0 (3-20).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `speed` is not a finite number greater than 0.
+        """
+        box = self.box
+        loads = tuple(
+            ContactLoad(shape, stiffness=box.mesh_stiffness, damping=box.mesh_damping, rate="total")
+            for shape in self.shapes
+        )
+        period = mesh_period(box.drive, speed)
+        return PeriodicSystem(box.mass_matrix, box.damping_matrix, box.stiffness_matrix, loads, period)

@@ -1,0 +1,50 @@
+"""What pages and chapters may not say: results without a number, and numbers that are not those of the arrays."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from compendium.datasets.transverse import unstable_share
+from facegear.support.labelled import load
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [*(ROOT / "book").glob("*.md"), ROOT / "README.md"]
+# A sentence with one of these claims more than a computation has shown.
+TOO_MUCH = re.compile(
+    r"safe side|on the safe|whatever the phase|not matter|hardly matter|hangs on|(?<!un)safe zone", re.I
+)
+# The dissertation's own term, where the text quotes it.
+QUOTED = ("marks a safe zone",)
+
+
+def texts() -> dict[str, str]:
+    found = {page.name: page.read_text(encoding="utf-8") for page in PAGES}
+    for path in (ROOT / "notebooks").glob("*.ipynb"):
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        found[path.name] = "\n".join("".join(cell["source"]) for cell in cells) + json.dumps(
+            [cell["metadata"] for cell in cells], ensure_ascii=False
+        )
+    return found
+
+
+@pytest.mark.parametrize("name", sorted(texts()))
+def test_no_sentence_claims_more_than_was_computed(name: str) -> None:
+    text = texts()[name]
+    for quotation in QUOTED:
+        text = text.replace(quotation, "")
+    assert [match.group() for match in TOO_MUCH.finditer(text)] == []
+
+
+def test_readme_has_the_shares_of_the_stored_maps() -> None:
+    shares = [
+        100 * unstable_share(load(ROOT / "data" / "reference" / f"ch04_{name}_4_04a.nc"))
+        for name in ("figure", "geometric")
+    ]
+    said = re.search(
+        r"\bit (\S+) % of the map of Fig. 4.4\(a\) are unstable,[^%]*?(\S+) %",
+        (ROOT / "README.md").read_text(),
+    )
+    assert said is not None
+    assert said.groups() == (f"{shares[0]:.0f}", f"{shares[1]:.1f}")

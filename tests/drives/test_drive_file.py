@@ -1,0 +1,482 @@
+"""Drive files: examples, every kind of mistake, and thousands of files that nobody would write."""
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from facegear.drives.drive_file import DriveFile, DriveFileError, parse_drive, read_drive_file
+from facegear.drives.drive_keys import NAME, SECTIONS
+from facegear.mechanics import cases, gearboxes
+from facegear.support.parameters import rad_per_s
+
+ROOT = Path(__file__).resolve().parents[2]
+DRIVES = ROOT / "data" / "drives"
+CASE_1 = (DRIVES / "case_1.yaml").read_text(encoding="utf-8")
+GEARBOX = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+PATHS = [NAME.name, *SECTIONS, *(f"{n}.{key.name}" for n, s in SECTIONS.items() for key in s.keys)]
+
+
+def refusal(content):
+    with pytest.raises(DriveFileError) as caught:
+        parse_drive(content, "my.yaml")
+    message = str(caught.value)
+    assert message.startswith("my.yaml: ")
+    assert "\n" not in message
+    return message.removeprefix("my.yaml: ")
+
+
+# --- examples -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "body"), [("case_1", cases.CASE_1), ("case_2", cases.CASE_2)])
+def test_cases_are_those_of_the_dissertation(name, body):
+    found = read_drive_file(DRIVES / f"{name}.yaml")
+    assert found.transverse.body.drive.pinion_teeth == body.drive.pinion_teeth
+    assert found.drive.module == pytest.approx(body.drive.module, rel=1e-15)
+    assert found.transverse.body.bore_radius == pytest.approx(body.bore_radius, rel=1e-15)
+    assert found.transverse.body.material == body.material
+    assert found.transverse.body.thickness_ratio == body.thickness_ratio
+    assert found.requirements.speed_range == pytest.approx((rad_per_s(100.0), rad_per_s(1000.0)), rel=1e-15)
+    assert found.torsional is None
+
+
+def test_example_b_is_that_of_the_caption():
+    found = read_drive_file(DRIVES / "example_b.yaml").transverse
+    assert (found.body.drive.pinion_teeth, found.body.drive.gear_teeth) == (31, 155)
+    assert found.body.thickness_ratio == 0.07
+    assert (found.load.stiffness, found.load.damping, found.load.mass) == pytest.approx((0.25, 1e-5, 1.0))
+    assert np.degrees(found.pinion_angles) == pytest.approx([0.0, 120.0])
+
+
+def test_gearbox_is_that_of_chapter_7():
+    box = read_drive_file(DRIVES / "gearbox_table_7_1.yaml").torsional.box
+    printed = gearboxes.FIGURES["7.12a"].model().gearbox
+    for name in ("pinion", "gear", "load"):
+        assert getattr(box, f"{name}_inertia") == pytest.approx(getattr(printed, f"{name}_inertia"), rel=1e-8)
+    for name in ("mesh", "input", "output"):
+        for part in ("stiffness", "damping"):
+            assert getattr(box, f"{name}_{part}") == pytest.approx(
+                getattr(printed, f"{name}_{part}"), rel=1e-8
+            )
+    assert box.mesh_contact_ratio == printed.mesh_contact_ratio == box.drive.contact_ratio
+
+
+def test_shafts_at_85_degrees():
+    found = read_drive_file(DRIVES / "shaft_angle_85.yaml")
+    assert math.degrees(found.drive.shaft_angle) == pytest.approx(85.0)
+    assert found.transverse.body.material.youngs_modulus == pytest.approx(71e9)
+    assert found.transverse.body.nodal_diameters == 4
+
+
+def test_clock_of_the_true_sweep():
+    found = parse_drive(CASE_1.replace("mass: 1.0", "mass: 1.0\n  contact_ratio: geometric"))
+    assert found.transverse.contact_ratio == found.drive.geometric_contact_ratio
+    box = parse_drive(GEARBOX.replace("mass: 1.0", "mass: 1.0\n  contact_ratio: geometric"))
+    assert box.torsional.box.contact_ratio == box.drive.geometric_contact_ratio
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("module_mm: 3.175", "diametral_pitch_per_inch: 8"), ("power_kW: 447.42", "power_hp: 600.0001044")],
+)
+def test_the_same_in_another_unit(old, new):
+    found, same = parse_drive(CASE_1.replace(old, new)), parse_drive(CASE_1)
+    assert found.drive.module == pytest.approx(same.drive.module, rel=1e-15)
+    assert found.requirements.power == pytest.approx(same.requirements.power, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["<img src=x onerror='1'>", "a\nb", "# heading", "=1+1", "\u202e\0\x1b[31m", "Zahnrad Ⅱ 🦷", "a" * 80],
+)
+def test_a_name_is_any_text(name):
+    content = {**yaml.safe_load(CASE_1), "name": name}
+    assert parse_drive(yaml.safe_dump(content)).name == name
+
+
+@pytest.mark.parametrize("name", ["case_1", "case_2", "shaft_angle_85"])
+def test_every_speed_that_is_accepted_can_be_computed(name):
+    content = yaml.safe_load((DRIVES / f"{name}.yaml").read_text(encoding="utf-8"))
+    low, high = 1000.0, 1e5
+    while high - low > 1e-3:
+        middle = (low + high) / 2
+        content["operation"].update(lowest_speed_rpm=middle / 50, highest_speed_rpm=middle)
+        try:
+            parse_drive(yaml.safe_dump(content))
+        except DriveFileError:
+            high = middle
+        else:
+            low = middle
+    content["operation"].update(lowest_speed_rpm=low / 50, highest_speed_rpm=low)
+    file = parse_drive(yaml.safe_dump(content))
+    duty, model = file.requirements, file.transverse
+    driven = replace(model, power=duty.power, power_speed=duty.pinion_speed)
+    assert np.isfinite(driven.system(duty.speed_range[1]).stiffness).all()
+    with pytest.raises(ValueError, match="speed must lie in"):
+        driven.system(1.001 * duty.speed_range[1])
+
+
+# --- mistakes that people make ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "module_mm: 3.175",
+            "module_mm: 0.003175",
+            r"gears.module_mm .*got 0.003175 mm .*3.175 would be valid",
+        ),
+        ("module_mm: 3.175", "module_mm: 3175", r"gears.module_mm .*got 3175 mm .*3.175 would be valid"),
+        (
+            "module_mm: 3.175",
+            "modul_mm: 3.175",
+            r"gears.modul_mm = 3.175 is no key .*did you mean gears.module_mm",
+        ),
+        (
+            "  module_mm: 3.175",
+            "  # module_mm: 3.175",
+            r"gears.module_mm or gears.diametral_pitch_per_inch is missing: m_d, module.* valid is a number",
+        ),
+        ("bore_radius_mm: 50", "bore_radius_mm:", r"body.bore_radius_mm is missing"),
+        ("bore_radius_mm: 50", "bore_radius_mm: 0.05", r"body.bore_radius_mm .*50 would be valid, in mm"),
+        (
+            "bore_radius_mm: 50",
+            "bore_radius_mm: 190",
+            r"body.bore_radius_mm .* 11.5969 and 188.433 mm .*got 190 mm",
+        ),
+        ("thickness_ratio: 0.03", "thickness_ratio: 30", r"body.thickness_ratio .*0.2.* got 30 .*0.03 would"),
+        (
+            "damping_us: 3",
+            "damping_us: 3e-6",
+            r"pinions.damping_us .*got 3e-06 µs .*: 3 would be valid, in µs",
+        ),
+        ("damping_us: 3", "damping_us: -3", r"pinions.damping_us .*got -3"),
+        ("damping_us: 3", "damping_us: '3'", r"pinions.damping_us must be 0, or a number from .*got '3'"),
+        ("mass: 1.0", "mass: .nan", r"pinions.mass must be finite, got nan"),
+        ("mass: 1.0", "mass: 1.0\n  mass: 2", r"line \d+: pinions.mass is given twice"),
+        ("mass: 1.0", "mass: [1.0]", r"pinions.mass must be 0, or a number .*got \[1.0\]"),
+        ("mass: 1.0", "mass: 1.0\n  angles_deg: 0", r"pinions.angles_deg must be a list .*got 0"),
+        ("mass: 1.0", "mass: 1.0\n  angles_deg: [0, 400]", r"pinions.angles_deg\[1\] .*got 400 °"),
+        (
+            "mass: 1.0",
+            "mass: 1.0\n  angles_deg: [5, -355]",
+            r"pinions.angles_deg\[1\] must differ .*-355° beside 5°",
+        ),
+        (
+            "mass: 1.0",
+            "mass: 1.0\n  contact_ratio: 1.5",
+            r"pinions.contact_ratio must be tregold or geometric, got 1.5",
+        ),
+        (
+            "pinion_teeth: 26",
+            "pinion_teeth: 26.0",
+            r"gears.pinion_teeth must be an integer of at least 10, got 26.0",
+        ),
+        ("pinion_teeth: 26", "pinion_teeth: true", r"gears.pinion_teeth must be an integer .*got True"),
+        ("pinion_teeth: 26", "pinion_teeth: 5", r"gears.pinion_teeth must be at least 10, got 5"),
+        ("pinion_teeth: 26", "pinion_teeth: 11", r"gears.pinion_teeth=11 is too few.*take more teeth"),
+        (
+            "pinion_teeth: 26",
+            "pinion_teeth: 140",
+            r"gears.gear_teeth must exceed gears.pinion_teeth=140, got 130",
+        ),
+        (
+            "module_mm: 3.175",
+            "module_mm: 3.175\n  pressure_angle_deg: 0.436",
+            r"gears.pressure_angle_deg .*14.5, 30.*got 0.436 ° .*24.98\d* would be valid",
+        ),
+        (
+            "lowest_speed_rpm: 100",
+            "lowest_speed_rpm: 10",
+            r"operation.lowest_speed_rpm .*1/50 of it, got 10 rpm",
+        ),
+        ("lowest_speed_rpm: 100", "lowest_speed_rpm: 1000", r"operation.lowest_speed_rpm .*got 1000 rpm"),
+        ("gears:", "gear:", r"gear = .* is no key of a drive file: did you mean gears\?"),
+        (
+            "name: Case I",
+            "name: Case I\nthickness_ratio: 3",
+            r"thickness_ratio = 3 is no key .*belongs to body",
+        ),
+        ("name: Case I", "name: 3", r"name must be text of 1 to 80 characters, got 3"),
+        ("name: Case I", "name: '  '", r"name must be text of 1 to 80 characters, got '  '"),
+        ("name: Case I", f"name: {'x' * 81}", r"name must be text of 1 to 80 characters, got 'xxx"),
+        ("name: Case I", 'name: "\\ud800"', r"line 2: '\\ud800' holds half a character"),
+        (
+            "module_mm: 3.175",
+            "module_mm: 3.175\n  diametral_pitch_per_inch: 8",
+            r"gears.module_mm and gears.diametral_pitch_per_inch say the same: give one of them",
+        ),
+        (
+            "power_kW: 447.42",
+            "power_kW: 447.42\n  power_hp: 600",
+            r"operation.power_kW and operation.power_hp say the same",
+        ),
+        (
+            "power_kW: 447.42",
+            "power: 447.42",
+            r"operation.power = 447.42 is no key .*did you mean operation.power_",
+        ),
+        (
+            "  power_kW: 447.42 # 600 hp\n",
+            "",
+            r"operation.power_kW or operation.power_hp is missing: power of one",
+        ),
+        (
+            "module_mm: 3.175",
+            "diametral_pitch_per_inch: 800",
+            r"gears.diametral_pitch_per_inch must lie in \[0.3, 200\] in 1/in, got 800",
+        ),
+        # What is swapped, mistyped or meant otherwise is said where the other reading would do.
+        (
+            "pinion_teeth: 26\n  gear_teeth: 130",
+            "pinion_teeth: 130\n  gear_teeth: 26",
+            r"must exceed gears.pinion_teeth=130, got 26 \(gears.pinion_teeth and gears.gear_teeth swapped\?\)",
+        ),
+        (
+            "lowest_speed_rpm: 100\n  highest_speed_rpm: 1000",
+            "lowest_speed_rpm: 1000\n  highest_speed_rpm: 100",
+            r"got 1000 rpm \(operation.lowest_speed_rpm and operation.highest_speed_rpm swapped\?\)",
+        ),
+        (
+            "module_mm: 3.175 # diametral pitch 8 per inch\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 50",
+            "module_mm: 8\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 20",
+            r"body.bore_radius_mm must lie between 29.* \(is 8 mm a diametral pitch per inch\?\)",
+        ),
+        (
+            "module_mm: 3.175 # diametral pitch 8 per inch\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 50",
+            "diametral_pitch_per_inch: 3.175\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 20",
+            r"body.bore_radius_mm must lie .* \(is 3.175 1/in a module in mm\?\)",
+        ),
+        ("thickness_ratio: 0.03", "thickness_ratio: 0,03", r"got '0,03' \(a point, not a comma: 0.03\)"),
+        (
+            "damping_us: 3",
+            "damping_us: 3 µs",
+            r"got '3 µs' \(the number alone, its unit is that of the key: 3\)",
+        ),
+        ("thickness_ratio: 0.03", "thickness_ratio: 6.9", r"thickness_ratio .*\(a ratio, not mm\?"),
+        ("stiffness: 1.0", "stiffness: 1e6", r"pinions.stiffness .*got 1000000.0 \(a ratio, not N/m\?"),
+        ("mass: 1.0", "mass: 3400", r"pinions.mass .*got 3400 \(a ratio, not kg\?"),
+        (
+            "highest_speed_rpm: 1000",
+            "highest_speed_rpm: 41650",
+            r"operation.lowest_speed_rpm must be lower",
+        ),
+        (
+            "lowest_speed_rpm: 100\n  highest_speed_rpm: 1000",
+            "lowest_speed_rpm: 1000\n  highest_speed_rpm: 41650",
+            r"operation.highest_speed_rpm must be at most 41589.6 rpm for this body.*got 41650 rpm",
+        ),
+        (
+            "name: Case I",
+            "name: Case I\nmaterial: steel",
+            r"material must be a section with the keys density.*'steel'",
+        ),
+        ("name: Case I", "name: Case I\nmaterial:", r"material must be a section .*None"),
+        (
+            "name: Case I",
+            "name: Case I\nmaterial: {youngs_modulus_GPa: 2e11}",
+            r"material.youngs_modulus_GPa .*: 200 wo",
+        ),
+        ("name: Case I", "name: Case I\ngearbox: {}", r"gearbox.pinion_inertia_kg_m2 is missing"),
+    ],
+)
+def test_a_mistake_ends_in_one_sentence_that_names_key_value_and_what_is_valid(old, new, message):
+    assert CASE_1.count(old) == 1
+    assert re.search(message, refusal(CASE_1.replace(old, new)))
+
+
+def test_mistakes_in_the_gearbox():
+    told = refusal(
+        GEARBOX.replace("mesh_stiffness_N_per_m: 157629095.3", "mesh_stiffness_N_per_m: 157629.0953")
+    )
+    assert re.search(r"gearbox.mesh_stiffness_N_per_m must lie in .*wrong by a factor of 1000", told)
+    assert "gearbox.arm must be printed or conjugate" in refusal(GEARBOX + "  arm: bent\n")
+
+
+@pytest.mark.parametrize("content", ["", "3", "- a\n- b", "name", b"\xff"])
+def test_what_is_no_mapping_is_refused(content):
+    assert re.search("must be a section|not text in UTF-8", refusal(content))
+
+
+def test_long_values_are_cut_in_messages():
+    assert len(refusal(CASE_1.replace("mass: 1.0", f"mass: {'x' * 5000}"))) < 250
+    assert len(refusal(CASE_1.replace("mass: 1.0", f"{'x' * 500}: 1.0"))) < 400
+
+
+def test_a_file_that_is_not_there(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(
+        DriveFileError, match=r"drive_file 'a\.yaml' cannot be read: No such file .*current folder is"
+    ):
+        read_drive_file("a.yaml")
+    with pytest.raises(DriveFileError, match="cannot be read: Is a directory"):
+        read_drive_file(tmp_path)
+    for wrong in ("", None, 3):
+        with pytest.raises(DriveFileError, match="drive_file must be the path of a YAML file"):
+            read_drive_file(wrong)
+    with pytest.raises(DriveFileError, match="cannot be read"):
+        read_drive_file("a\0b")
+
+
+# --- files that nobody would write ------------------------------------------------------------------------------
+
+
+def checked(content):
+    """Read a file; a refusal must be the project's own, on one line."""
+    try:
+        return parse_drive(content, "my.yaml")
+    except DriveFileError as error:
+        message = str(error)
+    assert message.startswith("my.yaml: ")
+    assert len(message.splitlines()) == 1
+    return message
+
+
+numbers = st.one_of(
+    st.integers(-(10**20), 10**20),
+    st.floats(),
+    st.sampled_from([0, 0.0, -0.0, 1, 1e-300, 1e300, 5e-324, 2**63]),
+)
+values = st.one_of(
+    numbers,
+    st.none(),
+    st.booleans(),
+    st.text(max_size=10),
+    st.lists(numbers, max_size=4),
+    st.dictionaries(st.text(max_size=3), numbers, max_size=2),
+)
+
+
+@st.composite
+def near_valid(draw, key):
+    """Value of a key that is valid or nearly so, on the scale of its range."""
+    if key.kind in ("text", "choice"):
+        return draw(values)
+    low = math.log10(max(key.lowest, 1e-4)) if key.lowest > 0 else -3.0
+    exponent = draw(st.floats(low - 1.0, math.log10(key.highest) + 1.0))
+    value = 10.0**exponent * draw(st.sampled_from([1, 1, 1, -1]))
+    if key.kind == "integer":
+        return round(value)
+    return [value, 0.0] if key.kind == "numbers" else value
+
+
+@st.composite
+def mutated(draw, base, valid=False):
+    """Drive file with some values replaced, and the paths of those; `valid` draws on the scale of each key."""
+    content = yaml.safe_load(base)
+    changed = []
+    for _ in range(draw(st.integers(1, 3))):
+        section = draw(st.sampled_from([name for name in SECTIONS if name in content] + ["material"]))
+        key = draw(st.sampled_from(SECTIONS[section].keys))
+        content.setdefault(section, {})[key.name] = draw(near_valid(key) if valid else values)
+        changed.append(f"{section}.{key.name}")
+    return content, changed
+
+
+def any_value_of_any_key_is_valid_or_named(case):
+    content, changed = case
+    found = checked(yaml.safe_dump(content, allow_unicode=True))
+    if isinstance(found, str):
+        assert any(path in found for path in changed) or "bore_radius" in found, found
+
+
+@settings(max_examples=60)
+@given(mutated(GEARBOX))
+def test_any_value_of_any_key_is_valid_or_named(case):
+    any_value_of_any_key_is_valid_or_named(case)
+
+
+@pytest.mark.slow
+@settings(max_examples=500)
+@given(mutated(GEARBOX))
+def test_any_value_of_any_key_is_valid_or_named_in_very_many_files(case):
+    any_value_of_any_key_is_valid_or_named(case)
+
+
+def any_number_of_the_right_size_is_valid_or_named(case):
+    content, changed = case
+    found = checked(yaml.safe_dump(content, allow_unicode=True))
+    sections = {path.split(".")[0] for path in changed}
+    if isinstance(found, str):
+        named = {path for path in PATHS if path in found}
+        # What a change makes impossible may be told of another key: other teeth, and the bore does not fit.
+        assert named, found
+        assert any(path in found for path in changed) or "gears" in sections, found
+
+
+@settings(max_examples=60)
+@given(mutated(GEARBOX, valid=True))
+def test_any_number_of_the_right_size_is_valid_or_named(case):
+    any_number_of_the_right_size_is_valid_or_named(case)
+
+
+@pytest.mark.slow
+@settings(max_examples=400)
+@given(mutated(GEARBOX, valid=True))
+def test_any_number_of_the_right_size_is_valid_or_named_in_very_many_files(case):
+    any_number_of_the_right_size_is_valid_or_named(case)
+
+
+def keys_left_out_or_misspelt_are_named(data):
+    content = yaml.safe_load(GEARBOX)
+    section = data.draw(st.sampled_from([name for name in SECTIONS if name in content]))
+    key = data.draw(st.sampled_from(sorted(content[section])))
+    value = content[section].pop(key)
+    other = data.draw(st.none() | st.text(min_size=1, max_size=12))
+    if other is not None:
+        content[section].setdefault(other, value)
+    found = checked(yaml.safe_dump(content, allow_unicode=True))
+    required = {k.name for k in SECTIONS[section].keys if k.default is None}
+    assert isinstance(found, DriveFile) == (key not in required and (other is None or other == key))
+    if isinstance(found, str):
+        assert f"{section}." in found or "not YAML" in found, found
+
+
+@settings(max_examples=40)
+@given(st.data())
+def test_keys_left_out_or_misspelt_are_named(data):
+    keys_left_out_or_misspelt_are_named(data)
+
+
+@pytest.mark.slow
+@settings(max_examples=200)
+@given(st.data())
+def test_keys_left_out_or_misspelt_are_named_in_very_many_files(data):
+    keys_left_out_or_misspelt_are_named(data)
+
+
+@settings(max_examples=200)
+@given(st.data())
+def test_damaged_text_is_refused_or_read(data):
+    start = data.draw(st.integers(0, len(GEARBOX)))
+    length = data.draw(st.integers(0, 40))
+    text = GEARBOX[:start] + data.draw(st.text(max_size=6)) + GEARBOX[start + length :]
+    checked(text)
+
+
+@settings(max_examples=200)
+@given(st.binary(max_size=200))
+def test_any_bytes_are_refused(content):
+    assert isinstance(checked(content), str)
+
+
+@pytest.mark.slow
+@settings(max_examples=300)
+@given(mutated(GEARBOX, valid=True))
+def test_what_is_valid_gives_systems(case):
+    found = checked(yaml.safe_dump(case[0], allow_unicode=True))
+    if isinstance(found, DriveFile):
+        for speed in found.requirements.speed_range:
+            for model in (found.transverse, found.torsional):
+                system = model.system(speed)
+                for load in system.loads:
+                    assert np.isfinite(load.shape(np.array([0.0, 0.3, 0.9]))).all()
+                assert np.isfinite(system.stiffness).all()

@@ -1,0 +1,176 @@
+"""Verdict on a drive: driving force, contact ratio, basis, in words."""
+
+import html.parser
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from facegear.drives import verdict
+from facegear.drives.basis import BasisStep, SettledTongues
+from facegear.drives.drive_file import read_drive_file
+from facegear.floquet.labels import Combination
+from facegear.floquet.multipliers import growth_rate
+from facegear.maps.tracing import Tongue
+from facegear.support.parameters import rad_per_s
+
+DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
+CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
+EXAMPLE_B = read_drive_file(DRIVES / "example_b.yaml")
+RANGE = (10.0, 110.0)
+
+
+def in_range(file, low, high):
+    speeds = (float(rad_per_s(low)), float(rad_per_s(high)))
+    return replace(file, requirements=replace(file.requirements, speed_range=speeds))
+
+
+class TestDrivenModel:
+    def test_case_1_flutters_under_its_own_power(self):
+        """36 of 37 speeds on the true sweep and 35 with Tregold's ratio; none, or 7, where the force is left out."""
+        speeds = np.linspace(*CASE_1.requirements.speed_range, 37)
+        counts = {}
+        for clock, ratio in verdict.clocks(CASE_1).items():
+            for force in ("follower", "dead"):
+                model = verdict.driven(CASE_1, force, ratio)
+                counts[clock, force] = sum(growth_rate(model.system(float(v))) > 0 for v in speeds)
+        assert counts == {
+            ("Tregold", "follower"): 35,
+            ("Tregold", "dead"): 7,
+            ("true sweep", "follower"): 36,
+            ("true sweep", "dead"): 0,
+        }
+
+    def test_carries_the_power_and_all_harmonics(self):
+        model = verdict.driven(EXAMPLE_B, "dead", 1.6)
+        assert (model.power, model.power_speed) == (447.42e3, EXAMPLE_B.requirements.pinion_speed)
+        assert (model.following, model.stress_harmonics, model.contact_ratio) == ("dead", 6, 1.6)
+
+    def test_flutter_of_the_mean_system_needs_a_following_force(self):
+        ratio = CASE_1.drive.geometric_contact_ratio
+        rates = [
+            verdict.mean_growth_rate(verdict.driven(CASE_1, force, ratio), 80.0)
+            for force in ("follower", "dead")
+        ]
+        assert rates[0] > 0 > rates[1]
+
+
+class TestCases:
+    def test_clock_of_the_file_first_and_both_forces(self):
+        found = verdict.cases(in_range(CASE_1, 960, 980), most_steps=1, jobs=1)
+        assert [case.name for case in found] == [
+            "Tregold, force follows the rim",
+            "Tregold, force keeps its direction",
+            "true sweep, force follows the rim",
+            "true sweep, force keeps its direction",
+        ]
+        assert [case.flutter_share for case in found] == [1.0, 0.0, 1.0, 0.0]
+        assert [case.found.unstable_share for case in found] == pytest.approx([1.0, 0.0, 1.0, 0.0])
+
+    def test_of_a_file_that_asks_for_the_true_sweep(self):
+        true = replace(
+            CASE_1, transverse=replace(CASE_1.transverse, contact_ratio=CASE_1.drive.geometric_contact_ratio)
+        )
+        assert list(verdict.clocks(true)) == ["true sweep", "Tregold"]
+
+
+def case(clock, force, *intervals, settled=True, moved=0.004, flutter=0.0):
+    found = tuple(
+        Tongue(low, high, (low + high) / 2, growth, Combination(1, 2, "sum", 1))
+        for low, high, growth in intervals
+    )
+    steps = (BasisStep(1, 3, found, np.nan), BasisStep(2, 5, found, moved))
+    return verdict.Case(
+        clock, force, SettledTongues(CASE_1.transverse, RANGE, steps, settled), flutter_share=flutter
+    )
+
+
+BAD = ((20.0, 30.0, 2.0),)
+
+
+class TestWords:
+    FILE = replace(CASE_1, requirements=replace(CASE_1.requirements, speed_range=RANGE))
+
+    def said(self, *computed, torsional=None):
+        return verdict.verdict(self.FILE, computed, torsional)
+
+    @pytest.mark.parametrize(
+        ("unstable", "words"),
+        [
+            ((True, True, True, True), "Not safe"),
+            (
+                (False, False, False, False),
+                "Stable at all speeds from 95.49 to 1050 rpm at 447.4 kW a pinion",
+            ),
+            ((True, False, True, False), "depends on whether the driving force follows the bent rim."),
+            ((True, True, False, False), "depends on the contact ratio."),
+            (
+                (True, False, False, False),
+                "depends on the contact ratio and on whether the driving force follows",
+            ),
+        ],
+    )
+    def test_headline_follows_from_the_cases(self, unstable, words):
+        settings = [(clock, force) for clock in ("Tregold", "true sweep") for force in ("follower", "dead")]
+        computed = [
+            case(clock, force, *(BAD if bad else ()))
+            for (clock, force), bad in zip(settings, unstable, strict=True)
+        ]
+        assert words in self.said(*computed).headline
+
+    def test_torsion_is_part_of_it(self):
+        stable = case("Tregold", "follower")
+        assert "In torsion it is unstable" in self.said(stable, torsional=stable_or(BAD)).headline
+        assert "In torsion it is stable" in self.said(stable, torsional=()).headline
+        assert "torsion (the file has no section gearbox)" in self.said(stable).left_out
+
+    def test_speeds_in_rpm_with_four_digits(self):
+        many = tuple((10.0 + 10 * i, 11.0 + 10 * i + 0.1 * i, 1.0) for i in range(5))
+        (finding,) = self.said(case("Tregold", "follower", *many)).findings
+        assert "286.5 to 297.9, 382 to 394.4, 477.5 to 490.8 rpm and 2 narrower intervals" in finding
+        assert "rad/s" not in finding
+        assert "parametric resonance, the strongest (1+2)/1" in finding
+        assert (
+            "2 nodal circles and 5 nodal diameters; the basis before differs at 0.4 % of the speeds"
+            in finding
+        )
+
+    def test_what_has_not_settled_says_so(self):
+        (finding,) = self.said(case("Tregold", "follower", *BAD, settled=False, moved=0.2)).findings
+        assert "NOT SETTLED" in finding
+
+    def test_flutter_is_named(self):
+        (finding,) = self.said(case("Tregold", "follower", *BAD, flutter=0.5)).findings
+        assert "at 50 % of the speeds the disk flutters by the driving force alone" in finding
+
+
+def stable_or(intervals):
+    return case("Tregold", "follower", *intervals).found.tongues
+
+
+class Reader(html.parser.HTMLParser):
+    """Reads a piece of HTML: its elements and its text."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.elements, self.text = [], ""
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append(tag)
+
+    def handle_data(self, data):
+        self.text += data
+
+
+@given(st.text(min_size=1, max_size=80))
+def test_text_of_a_file_stays_text(words):
+    read = Reader(verdict.as_html(words))
+    assert read.elements == ["span"]
+    assert len(read.text) == len(words)
+    assert all(shown in (given_, " ") for shown, given_ in zip(read.text, words, strict=True))
+    assert "\n" not in read.text

@@ -1,0 +1,117 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from facegear.floquet.hsu import band_speeds, resonance_bands
+from facegear.floquet.labels import Combination, combination
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.geometry.drive import Drive
+from facegear.maps.tracing import tongues
+from facegear.mechanics.plate import Body
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import MeshLoad, rad_per_s
+
+TURN = 2.0 * np.pi
+
+
+def wave(function):
+    return PiecewiseChebyshev.fit(lambda x, piece: function(TURN * x), [0.0])
+
+
+def system(frequencies, shape, stiffness=0.0, damping=0.0, mean_damping=0.01, function=np.cos):
+    load = ContactLoad(
+        PiecewiseChebyshev.constant(shape), stiffness=stiffness, damping=damping, weight=wave(function)
+    )
+    n = len(frequencies)
+    return PeriodicSystem(np.eye(n), mean_damping * np.eye(n), np.diag(np.square(frequencies)), [load], 1.0)
+
+
+GYROSCOPIC = np.array([[0.0, 6.0], [-6.0, 0.0]])
+
+
+@pytest.mark.parametrize(
+    ("built", "expected"),
+    [
+        (system((30.0, 71.0), (0.8, 0.6), stiffness=60.0), {"(1+1)/1", "(1+2)/1", "(2+2)/1"}),
+        (system((30.0, 71.0), (0.8, 0.6), damping=0.2), {"(1+1)/1", "(1+2)/1", "(2-1)/1", "(2+2)/1"}),
+        (
+            system((20.0, 33.0, 61.0), (0.5, 0.6, 0.7), stiffness=90.0),
+            {"(1+1)/1", "(1+2)/1", "(2+2)/1", "(1+3)/1", "(2+3)/1", "(3+3)/1"},
+        ),
+        (
+            # Two harmonics: the second drives every combination at half the speed.
+            system((30.0, 71.0), (0.8, 0.6), 60.0, function=lambda p: np.cos(p) + np.sin(2.0 * p)),
+            {f"({pair})/{order}" for pair in ("1+1", "1+2", "2+2") for order in (1, 2)},
+        ),
+    ],
+)
+def test_labels_are_those_of_averaging_at_the_peak_of_each_band(built, expected):
+    bands = resonance_bands(built, order=2)
+    assert {band.label for band in bands} == expected
+    for band in bands:
+        at_peak = replace(built, period=TURN / band.peak)
+        assert combination(at_peak).label == band.label
+
+
+def test_modes_of_a_gyroscopic_system_are_those_of_its_speed():
+    base = system((30.0, 40.0), (0.8, 0.6), stiffness=60.0)
+    turning = replace(base, damping=base.damping + GYROSCOPIC)
+    bands = resonance_bands(turning, order=1)
+    assert len(bands) >= 3
+    assert abs(bands[0].frequencies[0] - 30.0) > 0.5
+    for band in bands:
+        assert combination(replace(turning, period=TURN / band.peak)).label == band.label
+
+
+def test_resonances_of_higher_order_than_averaging_sees_are_named_by_their_phase():
+    # One harmonic only: first-order averaging knows the principal tongue and no other.
+    mathieu = system((50.0,), (1.0,), stiffness=0.3 * 2500.0, mean_damping=0.0)
+    assert [band.label for band in resonance_bands(mathieu, order=3)] == ["(1+1)/1"]
+
+    class Model:
+        def system(self, speed):
+            return replace(mathieu, period=TURN / speed)
+
+    found = tongues(Model(), 22.0, 130.0)
+    assert [tongue.label for tongue in found] == ["(1+1)/4", "(1+1)/3", "(1+1)/2", "(1+1)/1"]
+
+
+def test_combination_resonances_of_second_order_are_named():
+    pair = system((30.0, 71.0), (0.8, 0.6), stiffness=250.0, mean_damping=0.0)
+
+    class Model:
+        def system(self, speed):
+            return replace(pair, period=TURN / speed)
+
+    found = {tongue.label: tongue for tongue in tongues(Model(), 45.0, 56.0)}
+    assert "(1+2)/2" in found
+    assert found["(1+2)/2"].peak == pytest.approx(50.5, rel=0.02)
+
+
+def test_tongues_of_the_transverse_model_have_the_labels_of_averaging():
+    model = Transverse(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0))
+    low, high = rad_per_s(np.array([500.0, 1000.0]))
+    bands = band_speeds(model.system, (float(low), float(high)), order=1)
+    found = tongues(model, float(low), float(high))
+    assert len(found) == 4
+    for tongue in found:
+        overlapping = {
+            band.label for band in bands if band.lower < tongue.upper and tongue.lower < band.upper
+        }
+        assert tongue.label in overlapping
+
+
+def test_flutter_of_the_mean_system_is_told_from_resonance():
+    built = system((30.0, 71.0), (0.8, 0.6), stiffness=1.0)
+    unstable = replace(built, damping=np.diag([0.1, -0.2]), period=0.0371)
+    assert combination(unstable) == Combination(2, 2, "mean", 0)
+    assert combination(unstable).label == "mean 2"
+    falling = replace(built, stiffness=np.diag([-100.0, 71.0**2]))
+    assert combination(falling).label == "mean 0"
+
+
+def test_labels():
+    assert Combination(1, 3, "sum", 2).label == "(1+3)/2"
+    assert Combination(1, 3, "difference", 2).label == "(3-1)/2"

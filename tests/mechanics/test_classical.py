@@ -1,0 +1,130 @@
+"""Classical systems: right against equations written out anew, and against what is known of each."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from facegear.floquet import multipliers as floquet
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.mechanics import classical
+from tests.independent import classical as independent
+from tests.resonance_systems import CHECK
+
+
+def deviation(system, written_out):
+    right = independent.transition_matrix(written_out)
+    return np.abs(floquet.transition_matrix(system) - right).max() / np.abs(right).max()
+
+
+@pytest.mark.parametrize(
+    ("system", "written_out"),
+    [
+        (classical.mathieu(1.7, 0.4, 0.03), independent.mathieu(1.7, 0.4, 0.03)),
+        (classical.meissner(0.9, 0.6, 0.3, 0.02), independent.meissner(0.9, 0.6, 0.3, 0.02)),
+        (
+            classical.coupled_pair(1.3, 0.5, coupling=0.8, damping=0.02),
+            independent.coupled_pair(1.3, 0.5, 0.8, 0.0, 0.02),
+        ),
+        (
+            classical.coupled_pair(0.7, 0.5, circulation=0.8, damping=0.02),
+            independent.coupled_pair(0.7, 0.5, 0.0, 0.8, 0.02),
+        ),
+        (
+            classical.gear_pair(1.1, 1.563, droop=0.4, shaft_damping=0.02),
+            independent.gear_pair(1.1, 1.563, 0.4, 0.02),
+        ),
+        (
+            classical.gear_pair(1.1, 2.4, droop=1.0, shaft_damping=0.02),
+            independent.gear_pair(1.1, 2.4, 1.0, 0.02),
+        ),
+    ],
+    ids=["mathieu", "meissner", "spring", "circulatory", "jumps", "kinks"],
+)
+def test_systems_are_those_of_the_equations(system, written_out):
+    assert deviation(system, written_out) < 1e-10
+
+
+def test_natural_frequency_only_scales_time():
+    slow, fast = classical.mathieu(1.9, 0.4, 0.02), classical.mathieu(9.5, 0.4, 0.02, natural_frequency=5.0)
+    assert floquet.growth_rate(fast) == pytest.approx(5.0 * floquet.growth_rate(slow), rel=1e-9)
+
+
+@CHECK
+@given(
+    frequency=st.floats(0.3, 4.0),
+    depth=st.floats(0.0, 1.5),
+    duty=st.floats(0.05, 0.95),
+    damping_ratio=st.floats(0.0, 0.3),
+)
+def test_meissner_trace_in_closed_form(frequency, depth, duty, damping_ratio):
+    system = classical.meissner(frequency, depth, duty, damping_ratio)
+    # Constant in each of two pieces: one exponential a piece is exact.
+    matrix = floquet.transition_matrix(system, floquet.AlignedStepwise(2))
+    expected = classical.meissner_trace(frequency, depth, duty, damping_ratio)
+    assert np.trace(matrix) == pytest.approx(float(expected), rel=1e-11, abs=1e-11)
+
+
+def test_meissner_trace_stays_finite_where_the_soft_part_has_no_stiffness():
+    values = classical.meissner_trace(1.2, [1.0 - 1e-12, 1.0, 1.0 + 1e-12])
+    assert values[1] == pytest.approx(values[0], abs=1e-10)
+    assert values[1] == pytest.approx(values[2], abs=1e-10)
+
+
+@pytest.mark.parametrize(("contact_ratio", "pieces"), [(1.0, 1), (1.6, 2), (2.0, 1), (3.286, 2)])
+@pytest.mark.parametrize("droop", [0.0, 0.4, 1.0])
+def test_tooth_pairs_in_mesh(contact_ratio, pieces, droop):
+    wave = classical.tooth_pair_wave(contact_ratio, droop)
+    assert wave.breakpoints.size == pieces
+    assert np.abs(wave.jumps()).max() == pytest.approx(
+        0.0 if droop == 1.0 or pieces == 1 else 1.0 - droop, abs=1e-9
+    )
+    middles = (np.arange(2000) + 0.5) / 2000
+    assert wave(middles).mean() == pytest.approx(contact_ratio * (1.0 - droop / 3.0), abs=1e-3)
+
+
+def test_symmetric_coupling_has_the_sum_and_circulation_the_difference():
+    damping = 0.02
+    first, second = (math.sqrt(s) for s in np.linalg.eigvalsh([[1.0, 0.8], [0.8, 3.5]]))
+    spring = classical.coupled_pair(first + second, 0.6, coupling=0.8, damping=damping)
+    assert floquet.growth_rate(spring) > 1e-3
+    spring = classical.coupled_pair(second - first, 0.3, coupling=0.8, damping=damping)
+    assert floquet.growth_rate(spring) < -1e-3
+    first, second = (math.sqrt(s) for s in sorted(np.linalg.eigvals([[1.0, -0.8], [0.8, 3.5]]).real))
+    crossed = classical.coupled_pair(second - first, 0.3, circulation=0.8, damping=damping)
+    assert floquet.growth_rate(crossed) > 1e-3
+    crossed = classical.coupled_pair(first + second, 0.3, circulation=0.8, damping=damping)
+    assert floquet.growth_rate(crossed) < -1e-3
+
+
+@pytest.mark.parametrize(
+    ("build", "name"),
+    [
+        (lambda: classical.mathieu(0.0, 0.1), "frequency"),
+        (lambda: classical.mathieu(math.nan, 0.1), "frequency"),
+        (lambda: classical.mathieu(1.0, -0.1), "depth"),
+        (lambda: classical.mathieu(1.0, 0.1, 1.0), "damping_ratio"),
+        (lambda: classical.mathieu(1.0, 0.1, natural_frequency=-1.0), "natural_frequency"),
+        (lambda: classical.meissner(1.0, 0.1, 1.0), "duty"),
+        (lambda: classical.hill(1.0, 0.1, PiecewiseChebyshev.constant([1.0, 2.0])), "weight"),
+        (lambda: classical.coupled_pair(1.0, 0.1, circulation=1.3), "circulation"),
+        (lambda: classical.coupled_pair(1.0, 0.1, coupling=2.0), "coupling"),
+        (lambda: classical.coupled_pair(1.0, 0.1, stiffnesses=(1.0, 0.0)), r"stiffnesses\[1\]"),
+        (lambda: classical.coupled_pair(1.0, 0.1, damping=-0.1), "damping"),
+        (lambda: classical.gear_pair(1.0, 0.9), "contact_ratio"),
+        (lambda: classical.gear_pair(1.0, 1.5, droop=1.2), "droop"),
+        (lambda: classical.gear_pair(1.0, 1.5, pair_stiffness=-1.0), "pair_stiffness"),
+        (lambda: classical.gear_pair(1.0, 1.5, masses=(1.0, -1.0)), r"masses\[1\]"),
+        (lambda: classical.gear_pair(-1.0, 1.5), "mesh_frequency"),
+    ],
+)
+def test_bad_input_is_one_clear_error(build, name):
+    with pytest.raises(ValueError, match=name):
+        build()
+
+
+def test_text_is_no_number():
+    with pytest.raises(TypeError, match="depth"):
+        classical.mathieu(1.0, "0.1")

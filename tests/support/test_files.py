@@ -1,0 +1,65 @@
+"""Files appear whole or not at all."""
+
+import re
+
+import pytest
+
+from facegear.support.files import file_stem, written_whole
+
+
+def test_a_file_appears_when_all_is_written(tmp_path):
+    path = tmp_path / "folder" / "table.csv"
+    with written_whole(path) as place:
+        place.write_text("1", encoding="utf-8")
+        assert place.suffix == ".csv"
+        assert not path.exists()
+    assert path.read_text(encoding="utf-8") == "1"
+    assert path.stat().st_mode & 0o777 == 0o644
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_file_stays_what_it_was_if_writing_stops(tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text("old", encoding="utf-8")
+
+    def stop_halfway():
+        with written_whole(path) as place:
+            place.write_text("ne", encoding="utf-8")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stop_halfway()
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "../../etc/passwd",
+        "a/b\\c",
+        "CON",
+        "nul",
+        "",
+        " ",
+        "\x00",
+        "=1+1",
+        "-rf",
+        "~",
+        "a" * 500,
+        "Ü" * 300,
+        "齿轮",
+        "a\nb",
+    ],
+)
+def test_any_text_gives_a_name_of_a_file(tmp_path, text):
+    stem = file_stem(text)
+    assert re.fullmatch(r"[a-z0-9][a-z0-9_]{0,59}", stem)
+    assert stem not in {"con", "nul"}
+    (tmp_path / f"{stem}.nc").write_text("", encoding="utf-8")
+    assert [path.parent for path in tmp_path.rglob("*.nc")] == [tmp_path]
+
+
+def test_names_that_are_safe_can_be_read():
+    assert file_stem("transverse, true sweep") == "transverse_true_sweep"
+    assert file_stem("Zahnrad für Prüfstand 2") == "zahnrad_fur_prufstand_2"

@@ -1,0 +1,105 @@
+"""Pages that the build puts together: index of figures, run times, citation."""
+
+from pathlib import Path
+
+import nbformat
+import pytest
+import yaml
+
+from tools import pages
+
+ROOT = Path(__file__).resolve().parents[2]
+CONTENTS = """
+sections: []
+tables: []
+figures:
+- {number: "1.1", about: One gearbox, not_drawn: A photograph.}
+- {number: "1.2", about: Another gearbox, not_drawn: A photograph.}
+- {number: "4.4", about: Stability of Case I, data: true}
+- {number: "4.5", about: Stability of Case II, data: true}
+- {number: "4.6", about: Steps, not_drawn: A flow chart.}
+- {number: "5.5", about: Stability over an angle, data: true}
+"""
+
+
+def notebook(path, figures, record=True):
+    cells = [nbformat.v4.new_markdown_cell("# Title\n\nObjectives")]
+    for name, caption in figures.items():
+        cells.append(nbformat.v4.new_markdown_cell(f"## Section of {name}"))
+        cells.append(nbformat.v4.new_code_cell("1 + 1"))
+        cells[-1].metadata.mystnb = {"figure": {"name": name, "caption": caption}}
+        if record:
+            cells[-1].metadata.papermill = {"duration": float(len(cells))}
+    content = nbformat.v4.new_notebook(cells=cells)
+    if record:
+        content.metadata.papermill = {"duration": 12.34, "start_time": "2026-11-22T16:34:08.041790+00:00"}
+    path.parent.mkdir(exist_ok=True)
+    nbformat.write(content, path)
+    return path
+
+
+@pytest.fixture
+def listed(tmp_path):
+    path = tmp_path / "contents.yaml"
+    path.write_text(CONTENTS, encoding="utf-8")
+    return path
+
+
+def test_index_leads_to_labels_and_else_to_captions(tmp_path, listed):
+    path = notebook(
+        tmp_path / "04_one.ipynb",
+        {
+            "fig-4-4": "Case I, Fig. 4.4.",
+            "fig-hsu": "Hsu over Fig. 4.4(a) ([data](a.nc)).",
+            "fig-b": "See Fig. 4.5.",
+        },
+    )
+    lines = pages.figure_index(listed, [path]).splitlines()
+    assert "| 4.4 | Stability of Case I | {numref}`fig-4-4` |" in lines
+    assert "| 4.5 | Stability of Case II | {numref}`fig-b` |" in lines
+    assert "| 4.6 | Steps (drawing) | A flow chart. |" in lines
+    assert "| 5.5 | Stability over an angle | its chapter is not in the book yet |" in lines
+    assert "| 1.1 to 1.2 | One gearbox; Another gearbox (drawing) | A photograph. |" in lines
+    assert any("2 of 3" in line for line in lines)
+
+
+def test_index_takes_parts_of_a_figure_together(tmp_path, listed):
+    path = notebook(
+        tmp_path / "04_one.ipynb", {"fig-4-4a": "a", "fig-4-4-b": "b", "fig-4-5": "c", "fig-4-40": "d"}
+    )
+    text = pages.figure_index(listed, [path])
+    assert "{numref}`fig-4-4a`, {numref}`fig-4-4-b` |" in text
+    assert "fig-4-40" not in text
+
+
+def test_index_refuses_a_figure_that_is_neither_shown_nor_explained(tmp_path, listed):
+    path = notebook(tmp_path / "04_one.ipynb", {"fig-4-4": "Case I."})
+    with pytest.raises(ValueError, match=r"figures 4\.5 are in no notebook"):
+        pages.figure_index(listed, [path])
+
+
+def test_index_of_this_book_shows_the_data_figures_of_its_chapters():
+    notebooks = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    text = pages.figure_index(ROOT / "data" / "contents.yaml", notebooks)
+    for number in ("3.9", "3.13", "4.4", "4.14"):
+        (line,) = [line for line in text.splitlines() if line.startswith(f"| {number} |")]
+        assert f"{{numref}}`fig-{number.replace('.', '-')}" in line
+
+
+def test_run_times_are_those_of_papermill(tmp_path):
+    first = notebook(tmp_path / "a" / "04_one.ipynb", {"fig-a": "a", "fig-b": "b"})
+    second = notebook(tmp_path / "a" / "90_ledger.ipynb", {})
+    lines = pages.run_times([first, second]).splitlines()
+    assert "| 12.3 | {doc}`notebooks/04_one` | 5.0 | Section of fig-b | 2 | 2026-11-22 16:34 |" in lines
+    assert any("25 s in sum" in line for line in lines)
+    bare = notebook(tmp_path / "a" / "91_bare.ipynb", {}, record=False)
+    with pytest.raises(ValueError, match=r"91_bare\.ipynb carries no record"):
+        pages.run_times([bare])
+
+
+def test_bibtex_says_what_the_citation_file_says():
+    cff = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    text = pages.bibtex(ROOT / "CITATION.cff")
+    assert text.count("{") == text.count("}")
+    for value in (cff["title"], cff["version"], cff["references"][0]["title"], "Peng, Meng", "year = {2012}"):
+        assert value in text
