@@ -6,7 +6,7 @@ Where other matrices change, they are interpolated along the parameter as far as
 cell by cell where they are not. Columns are shared out in chunks over processes by joblib.
 
 What falls between the columns of a map, tongues narrower than their distance, is found by
-:func:`facegear.maps.tracing.tongues`, which belongs to this module's public names.
+:func:`facegear.maps.tracing.tongues`.
 """
 
 from __future__ import annotations
@@ -37,10 +37,7 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import Array, PiecewiseChebyshev
 from facegear.floquet.stepping import Family
 from facegear.maps.parallel import Workers, computed, parts_of
-from facegear.maps.tracing import borders, tongues
 from facegear.support.parameters import finite_array, rpm
-
-__all__ = ["borders", "stability_map", "tongues"]
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from scipy.linalg import eigh_tridiagonal
 from scipy.optimize import brentq
 
-import facegear.maps.stability_map
 from facegear.floquet import multiplier_curves
 from facegear.floquet.hsu import resonance_bands
 from facegear.floquet.multiplier_curves import MultiplierCurve
@@ -362,11 +361,6 @@ def test_other_arguments_are_checked():
         borders(mathieu(0.1), "damping", [], 90.0, 110.0, jobs=1)
     with pytest.raises(ValueError, match=r"parameter must be one of .*damping"):
         borders(mathieu(0.1), "thickness", [0.1], 90.0, 110.0, jobs=1)
-
-
-def test_maps_offers_tongues_as_well():
-    assert facegear.maps.stability_map.tongues is tongues
-    assert facegear.borders is borders
 
 
 def test_samples_that_nearly_coincide_do_not_hide_the_peak():

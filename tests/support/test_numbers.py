@@ -23,7 +23,8 @@ from facegear.floquet.radau import Radau
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, SkewLine, mesh_period
 from facegear.geometry.phases import phase_split
-from facegear.maps.stability_map import stability_map, tongues
+from facegear.maps.stability_map import stability_map
+from facegear.maps.tracing import tongues
 from facegear.mechanics import cases, classical, disk, edge_stiffness, plate, torsional
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.inplane import EdgeLoadStress

@@ -1,0 +1,37 @@
+"""What `facegear` itself offers: a handful of names, each in use, each with its documentation."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import facegear
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", *(ROOT / "book").glob("*.md"), *(ROOT / "notebooks").glob("*.ipynb")]
+
+
+def test_there_are_as_many_as_one_can_learn():
+    assert 18 <= len(facegear.__all__) <= 30
+
+
+@pytest.mark.parametrize("name", facegear.__all__)
+def test_each_is_used_by_a_chapter_or_the_readme_and_says_what_it_is(name):
+    assert any(re.search(rf"\bfg\.{name}\b", page.read_text(encoding="utf-8")) for page in PAGES)
+    assert getattr(facegear, name) is not None
+    assert name == "STEEL" or getattr(facegear, name).__doc__
+    assert name in dir(facegear)
+
+
+def test_another_name_is_no_attribute():
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = facegear.no_such_name
+
+
+def test_importing_it_loads_nothing_heavy():
+    code = "import sys, facegear; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert not {"numpy", "scipy", "sympy", "matplotlib", "xarray"} & loaded
