@@ -64,7 +64,7 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
     drive, body, model = file.drive, file.transverse.body, file.transverse
     force = driving_force(body, file.requirements.power, file.requirements.pinion_speed)
     return (
-        Row("gear ratio N2/N1", 1.0 / drive.gear_ratio, "1"),
+        Row("gear ratio N2/N1", drive.gear_ratio, "1"),
         Row("pitch radius of the pinion", 1e3 * drive.pitch_radius, "mm"),
         Row("inner radius of the teeth R1", 1e3 * drive.inner_radius, "mm"),
         Row("outer radius of the teeth R2", 1e3 * drive.outer_radius, "mm"),

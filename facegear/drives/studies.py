@@ -56,7 +56,7 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
     horsepower = 0.0
     if start.power is not None and start.power_speed is not None:
         # The power control holds at the highest speed: the same force.
-        full = rad_per_s(highest_speed_rpm) / drive.gear_ratio
+        full = rad_per_s(highest_speed_rpm) / drive.speed_ratio
         horsepower = start.power / start.power_speed * full / WATT_PER_HORSEPOWER
     clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
     ratio = next((name for name, value in clocks.items() if value == start.mesh_contact_ratio), None)
@@ -139,7 +139,7 @@ def _drive_model(settings: Settings) -> Model:
         pinion_angles=angles,
         contact_ratio=drive.geometric_contact_ratio if settings["contact_ratio"] == TRUE_SWEEP else None,
         power=settings["power"],
-        power_speed=settings["highest_speed"] / drive.gear_ratio,
+        power_speed=settings["highest_speed"] / drive.speed_ratio,
     )
 
 

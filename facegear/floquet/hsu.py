@@ -33,6 +33,7 @@ from facegear.floquet.averaging import (
     unstable_intervals,
 )
 from facegear.floquet.modal import ModalExpansion, modal_expansion
+from facegear.floquet.models import Model
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import ascending, integer_at_least, nonnegative
 
@@ -214,7 +215,7 @@ def growth_rate_at(
 
 
 def band_speeds(
-    system_at: Callable[[float], PeriodicSystem],
+    model: Model,
     speeds: tuple[float, float],
     *,
     order: int = 6,
@@ -226,8 +227,8 @@ def band_speeds(
 
     Parameters
     ----------
-    system_at : callable
-        Speed to PeriodicSystem, such as ``model.system`` with rad/s of the face gear.
+    model : Model
+        Its system at each speed [rad/s].
     speeds : tuple of float
         Lowest and highest speed at which sω may equal a combination of natural frequencies; borders may lie
         outside.
@@ -257,7 +258,7 @@ def band_speeds(
     reach = nonnegative("reach", reach)
     low, high = ascending("speeds", speeds, "rad/s")
     grid = np.linspace(low, high, integer_at_least("points", points, 2))
-    sampled = [expand(system_at(float(speed)), 1) for speed in grid]
+    sampled = [expand(model.system(float(speed)), 1) for speed in grid]
     sizes = {len(mean.frequencies) for mean in sampled}
     if len(sizes) > 1:
         raise ValueError(
@@ -275,7 +276,7 @@ def band_speeds(
                 if detuning[i + 1] == 0 and i + 2 < len(grid):
                     continue  # The next interval begins with this root.
                 bracket = ((grid[i], detuning[i]), (grid[i + 1], detuning[i + 1]))
-                found += _bands_near(system_at, expand, bracket, (a, b, s), order, reach)
+                found += _bands_near(model, expand, bracket, (a, b, s), order, reach)
     # A band is best known from the crossing of its own pair, then from the larger block.
     found.sort(key=lambda item: (not item[0], -len(item[1].band.block.members)))
     bands = _without_repeats([band for _, band in found])
@@ -298,7 +299,7 @@ def _without_repeats(bands: list[_Band]) -> list[_Band]:
 
 
 def _bands_near(
-    system_at: Callable[[float], PeriodicSystem],
+    model: Model,
     expand: Callable[[PeriodicSystem, int], ModalExpansion],
     bracket: tuple[tuple[float, float], tuple[float, float]],
     pair: tuple[int, int, int],
@@ -312,7 +313,7 @@ def _bands_near(
     a, b, s = pair
 
     def residual(speed: float) -> float:
-        mean = expand(system_at(speed), 1)
+        mean = expand(model.system(speed), 1)
         return float(
             s * mean.parametric_frequency - (mean.signed_frequencies[a] - mean.signed_frequencies[b])
         )
@@ -320,7 +321,7 @@ def _bands_near(
     # The chord is good enough to see whether there is anything to be found.
     (low, at_low), (high, at_high) = bracket
     crossing = low if at_low == at_high else low - at_low * (high - low) / (at_high - at_low)
-    expansion = expand(system_at(crossing), order)
+    expansion = expand(model.system(crossing), order)
     if not coupled(expansion, a, b, s):
         return
     _refuse_unstable_mean(expansion)
@@ -328,11 +329,11 @@ def _bands_near(
         return
     if at_low * at_high < 0:
         crossing = float(brentq(residual, low, high, xtol=1e-10 * high))
-        expansion = expand(system_at(crossing), order)
+        expansion = expand(model.system(crossing), order)
     block = congruent_block(expansion, a, b, s, expansion.parametric_frequency, reach)
 
     def growth(speed: float) -> float:
-        here = expand(system_at(speed), order)
+        here = expand(model.system(speed), order)
         return float(averaged_block(here, block.members, block.shifts).growth_rate(here.parametric_frequency))
 
     level = _ROUNDING * float(np.abs(block.coupling).max())

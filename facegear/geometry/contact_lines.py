@@ -103,7 +103,7 @@ class ContactRegion:
         r_bs [m].
     space_half_angle : float
         θ_0s [rad].
-    gear_ratio : float
+    speed_ratio : float
         m_2s.
     shaft_angle : float
         γ [rad].
@@ -123,7 +123,7 @@ class ContactRegion:
 
     base_radius: float
     space_half_angle: float
-    gear_ratio: float
+    speed_ratio: float
     shaft_angle: float
     inner_radius: float
     outer_radius: float
@@ -148,7 +148,7 @@ class ContactRegion:
         """Cot γ_s of the shaper's pitch cone (3-16)."""
         s = meshing
         function = s.compiled(s.pointing_cone_angle_cotangent, s.m_2s, s.gamma)
-        return float(function(self.gear_ratio, self.shaft_angle))
+        return float(function(self.speed_ratio, self.shaft_angle))
 
     def radial_position(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
         """−y_p [m], along the gear plane in the plane of both axes."""
@@ -157,7 +157,7 @@ class ContactRegion:
     def _components(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
         s = meshing
         function = s.compiled(s.contact_point, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
-        return function(alpha, roll, self.base_radius, self.gear_ratio, self.shaft_angle)
+        return function(alpha, roll, self.base_radius, self.speed_ratio, self.shaft_angle)
 
     def depth(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
         """Distance from the shaper's axis of the cone through a point that is parallel to the tooth top [m].
@@ -171,7 +171,7 @@ class ContactRegion:
         """Arc length of the contact line per local pressure angle at constant φs [m]."""
         s = meshing
         function = s.compiled(s.contact_line_speed, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
-        return function(alpha, roll, self.base_radius, self.gear_ratio, self.shaft_angle)
+        return function(alpha, roll, self.base_radius, self.speed_ratio, self.shaft_angle)
 
     # --- corners -----------------------------------------------------------------------------------------
 
@@ -294,7 +294,7 @@ class ContactRegion:
             base_radius=self.base_radius,
             tip_radius=self.base_radius * math.hypot(1.0, self.shaper_tip_roll),
             pitch=self.pitch,
-            gear_ratio=self.gear_ratio,
+            speed_ratio=self.speed_ratio,
             shaft_angle=self.shaft_angle,
             ends=(
                 float(self.position(min(inner))) - self.overhang,

@@ -112,9 +112,14 @@ class Drive:
     # --- circles and angles of pinion and shaper ------------------------------------------------------------
 
     @property
-    def gear_ratio(self) -> float:
+    def speed_ratio(self) -> float:
         """m_2s = Ns/N2, face-gear speed over pinion speed."""
         return self.pinion_teeth / self.gear_teeth
+
+    @property
+    def gear_ratio(self) -> float:
+        """N2/N1, pinion speed over face-gear speed."""
+        return self.gear_teeth / self.pinion_teeth
 
     @property
     def angular_pitch(self) -> float:
@@ -180,7 +185,7 @@ class Drive:
     def cone_cotangent(self) -> float:
         """Cot γ_s (3-16), so that u_s = r_bs cot γ_s / cos α_s wherever f = 0."""
         function = meshing.compiled(meshing.pointing_cone_angle_cotangent, meshing.m_2s, meshing.gamma)
-        return float(function(self.gear_ratio, self.shaft_angle))
+        return float(function(self.speed_ratio, self.shaft_angle))
 
     # --- limits of the face-gear tooth ----------------------------------------------------------------------
 
@@ -190,7 +195,7 @@ class Drive:
 
         The negative one lies on the other branch of the meshing surface; `undercut_root` is the physical one.
         """
-        m, gamma_m = self.gear_ratio, math.pi - self.shaft_angle
+        m, gamma_m = self.speed_ratio, math.pi - self.shaft_angle
         function = meshing.compiled(meshing.undercut_coefficients, meshing.p, meshing.q, meshing.theta_star)
         values = function(m * math.sin(gamma_m), 1.0 - m * math.cos(gamma_m), self.shaper_tip_roll)
         polynomial = np.polynomial.Polynomial(np.array(values, dtype=np.float64)[::-1])
@@ -212,7 +217,7 @@ class Drive:
         """L1 along the shaper's axis, where undercutting ends [m] (3-13)."""
         s = meshing
         function = s.compiled(s.inner_limit, s.t, s.p, s.q, s.r_bs, s.r_ds, s.gamma)
-        m, gamma_m = self.gear_ratio, math.pi - self.shaft_angle
+        m, gamma_m = self.speed_ratio, math.pi - self.shaft_angle
         p, q = m * math.sin(gamma_m), 1.0 - m * math.cos(gamma_m)
         t = self.undercut_root
         return float(function(t, p, q, self.base_radius, self.dedendum_radius, self.shaft_angle))
@@ -233,7 +238,7 @@ class Drive:
         s = meshing
         function = s.compiled(s.outer_limit, s.alpha, s.r_bs, s.r_top, s.m_2s, s.gamma)
         alpha, top = self.pointing_angle, self.tooth_top_distance
-        return float(function(alpha, self.base_radius, top, self.gear_ratio, self.shaft_angle))
+        return float(function(alpha, self.base_radius, top, self.speed_ratio, self.shaft_angle))
 
     @property
     def inner_radius(self) -> float:
@@ -268,7 +273,7 @@ class Drive:
         A face-gear pitch cone beyond 90° makes an internal formative gear, one of 90° a rack; the formula is
         written in 1/N_v so that it passes through all three.
         """
-        m_12, sine, cosine = 1.0 / self.gear_ratio, math.sin(self.shaft_angle), math.cos(self.shaft_angle)
+        m_12, sine, cosine = 1.0 / self.speed_ratio, math.sin(self.shaft_angle), math.cos(self.shaft_angle)
         cone_1 = math.atan2(sine, m_12 + cosine)
         cone_2 = math.atan2(m_12 * sine, 1.0 + m_12 * cosine)
         inverses = (math.cos(cone_1) / self.pinion_teeth, math.cos(cone_2) / self.gear_teeth)
@@ -295,7 +300,7 @@ class Drive:
         return ContactRegion(
             base_radius=self.base_radius,
             space_half_angle=self.space_half_angle,
-            gear_ratio=self.gear_ratio,
+            speed_ratio=self.speed_ratio,
             shaft_angle=self.shaft_angle,
             inner_radius=self.inner_radius,
             outer_radius=self.outer_radius,

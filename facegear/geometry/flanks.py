@@ -46,7 +46,7 @@ def shaper_to_gear(region: ContactRegion, points: ArrayLike, rotation: ArrayLike
     s = meshing
     function = s.compiled(s.rotation_2s, s.phi_s, s.phi_2, s.gamma_m)
     phi = np.asarray(rotation, dtype=np.float64)
-    return _rotate(function(phi, region.gear_ratio * phi, math.pi - region.shaft_angle), points)
+    return _rotate(function(phi, region.speed_ratio * phi, math.pi - region.shaft_angle), points)
 
 
 def shaper_to_fixed(region: ContactRegion, points: ArrayLike, rotation: ArrayLike) -> FloatArray:
@@ -61,7 +61,7 @@ def gear_to_fixed(region: ContactRegion, points: ArrayLike, rotation: ArrayLike)
     """Carry points (..., 3) from Γ2 to Γp at rotations φs [rad] that broadcast against (...)."""
     function = meshing.compiled(meshing.rotation_2p, meshing.phi_2)
     # The inverse of M_2p(φ2) is M_2p(−φ2).
-    return _rotate(function(-region.gear_ratio * np.asarray(rotation, dtype=np.float64)), points)
+    return _rotate(function(-region.speed_ratio * np.asarray(rotation, dtype=np.float64)), points)
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def top_thickness(region: ContactRegion, radius: float) -> float:
     alpha = region.edge_angle(radius, roll)
     x, y, _ = region.point(alpha, roll)
     # Γ2's y axis is the tooth's plane of symmetry: both flanks lie at the same angle from it.
-    gear_angle = math.atan2(x, -y) - region.gear_ratio * (alpha - roll - region.space_half_angle)
+    gear_angle = math.atan2(x, -y) - region.speed_ratio * (alpha - roll - region.space_half_angle)
     return 2.0 * math.hypot(x, y) * gear_angle
 
 

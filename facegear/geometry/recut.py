@@ -79,7 +79,7 @@ class Shaper:
         r_bs and r_as [m].
     pitch : float
         Angular pitch of its teeth 2π/Ns [rad].
-    gear_ratio : float
+    speed_ratio : float
         m_2s.
     shaft_angle : float
         γ [rad].
@@ -90,7 +90,7 @@ class Shaper:
     base_radius: float
     tip_radius: float
     pitch: float
-    gear_ratio: float
+    speed_ratio: float
     shaft_angle: float
     ends: tuple[float, float]
 
@@ -98,13 +98,13 @@ class Shaper:
     def _cone_cotangent(self) -> float:
         s = meshing
         function = s.compiled(s.pointing_cone_angle_cotangent, s.m_2s, s.gamma)
-        return float(function(self.gear_ratio, self.shaft_angle))
+        return float(function(self.speed_ratio, self.shaft_angle))
 
     def _place(self, alpha: FloatArray, roll: FloatArray, turn: FloatArray) -> Place:
         """Where points of the flank are in the shaper's fixed axes, a rotation δ after they were generated."""
         s = meshing
         function = s.compiled(s.returned_point, s.alpha, s.theta_s, s.delta, s.r_bs, s.m_2s, s.gamma)
-        x, y, u = function(alpha, roll, turn, self.base_radius, self.gear_ratio, self.shaft_angle)
+        x, y, u = function(alpha, roll, turn, self.base_radius, self.speed_ratio, self.shaft_angle)
         radius = np.hypot(x, y)
         there = np.sqrt(np.maximum((radius / self.base_radius) ** 2 - 1.0, 0.0))
         return Place(radius, np.arctan2(x, -y), u, there)

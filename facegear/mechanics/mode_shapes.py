@@ -33,7 +33,7 @@ def plate_modes(body: Body, samples: int = 61) -> xr.Dataset:
         {
             "mode": variable((*both, "radius"), values, "Radial mode function times a", "1", atol=1e-9),
             "frequency": variable(
-                both, body.natural_frequencies(), "Natural frequency at rest", "Hz", rtol=1e-10
+                both, body.natural_frequencies_hz(), "Natural frequency at rest", "Hz", rtol=1e-10
             ),
         },
         coords={

@@ -327,7 +327,7 @@ class Body:
         values.setflags(write=False)
         return values
 
-    def natural_frequencies(self) -> FloatArray:
+    def natural_frequencies_hz(self) -> FloatArray:
         """Undamped natural frequencies of the disk at rest.
 
         Returns

@@ -246,7 +246,7 @@ def _shapes(mesh: _Mesh) -> tuple[PiecewiseChebyshev, ...]:
     def arms(pair: int, piece: int, local: FloatArray) -> FloatArray:
         """Arm about the face-gear axis [m] while the pair is in contact; `local` from -1 to 1."""
         if not moving:
-            return np.full(local.shape, drive.base_radius / drive.gear_ratio)
+            return np.full(local.shape, drive.base_radius / drive.speed_ratio)
         if mesh.path == "skew_line":
             radius = skew.pair_states_on_piece(piece, local).radius[pair]
         elif mesh.path == "contact_path":

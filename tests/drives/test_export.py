@@ -48,7 +48,7 @@ def clearance(drive, points, rotation):
     The shaper's frame and its involute are written down anew: on a circle of radius ρ the flank stands at the polar
     angle θ0s + √(ρ²/rb² − 1) − atan √(ρ²/rb² − 1) from the middle of its tooth space, which points to −y.
     """
-    fixed = turned("z", drive.gear_ratio * rotation, points)
+    fixed = turned("z", drive.speed_ratio * rotation, points)
     shaper = turned("z", -rotation, turned("x", -(math.pi - drive.shaft_angle), fixed))
     x, y = shaper[:, 0], shaper[:, 1]
     beyond = np.hypot(x, y) > drive.pitch_radius + 1.25 * drive.module

@@ -93,7 +93,7 @@ def test_combination_resonances_of_second_order_are_named():
 def test_tongues_of_the_transverse_model_have_the_labels_of_averaging():
     model = Transverse(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0))
     low, high = rad_per_s(np.array([500.0, 1000.0]))
-    bands = band_speeds(model.system, (float(low), float(high)), order=1)
+    bands = band_speeds(model, (float(low), float(high)), order=1)
     found = tongues(model, float(low), float(high))
     assert len(found) == 4
     for tongue in found:

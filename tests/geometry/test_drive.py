@@ -235,10 +235,10 @@ def test_frames_agree(drive):
     phi = 0.5 * (drive.entry_rotation + drive.exit_rotation)
     lines = drive.contact_lines([phi])
     gear, fixed = lines.gear_points(5)[0], lines.fixed_points(5)[0]
-    back = rotation(2, phi * drive.gear_ratio) @ gear.T
+    back = rotation(2, phi * drive.speed_ratio) @ gear.T
     np.testing.assert_allclose(fixed, back.T, rtol=0, atol=1e-14)
     tooth = drive.tooth_flank(3, 3)
-    turned = tooth.points @ rotation(2, 0.3 * drive.gear_ratio).T
+    turned = tooth.points @ rotation(2, 0.3 * drive.speed_ratio).T
     np.testing.assert_allclose(tooth.fixed_points(0.3), turned, rtol=0, atol=1e-14)
     pinion = drive.pinion_flank(3, 4)
     tilt = rotation(0, math.pi - drive.shaft_angle) @ rotation(2, 0.3)
@@ -348,7 +348,7 @@ def test_true_flanks_meet_close_to_the_outer_limit(drive):
         theta, phi = mpmath.findroot(on_top_and_symmetric, (roll + 1e-3, phi - 1e-3), tol=1e-25)
         y = mp_surface(drive, theta, phi)[0][1]
         # `radius` is measured in the generating position, the gear turned by m_2s φ.
-        assert float(-y * mpmath.cos(drive.gear_ratio * phi)) == pytest.approx(radius, rel=1e-10)
+        assert float(-y * mpmath.cos(drive.speed_ratio * phi)) == pytest.approx(radius, rel=1e-10)
 
 
 # --- contact lines by brute force ------------------------------------------------------------------------------
@@ -358,7 +358,9 @@ def brute_force_line(drive, phi):
     """Scan the straight contact line in small chords, keep what lies within all bounds."""
     rb, theta_0 = drive.base_radius, drive.space_half_angle
     cone = (
-        (1 + drive.gear_ratio * math.cos(drive.shaft_angle)) / drive.gear_ratio / math.sin(drive.shaft_angle)
+        (1 + drive.speed_ratio * math.cos(drive.shaft_angle))
+        / drive.speed_ratio
+        / math.sin(drive.shaft_angle)
     )
     tilt = rotation(0, math.pi - drive.shaft_angle) @ rotation(2, phi)
 
@@ -414,7 +416,7 @@ def invariants_hold(drive, share):
     assert drive.contact_ratio > 1.0
     assert drive.geometric_contact_ratio > 1.0
     # L1 at the undercut limit, by the spec's polynomial written out.
-    m, star, t = drive.gear_ratio, drive.shaper_tip_roll, drive.undercut_root
+    m, star, t = drive.speed_ratio, drive.shaper_tip_roll, drive.undercut_root
     p, q = m * math.sin(drive.shaft_angle), 1 + m * math.cos(drive.shaft_angle)
     excess = p**2 * star * (star - t) - q * t * (1 + t**2) * ((1 - q) * star + q * t)
     assert abs(excess) < 1e-14

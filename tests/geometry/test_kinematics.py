@@ -56,7 +56,7 @@ def test_breakpoints_follow_from_the_closed_form_corners():
     """γ = 90°: q(R1), q(R2) from the radii, the corners from the tooth-top plane and the tip circle."""
     d = CASE_I
     top, tip = d.tooth_top_distance / d.base_radius, math.sqrt((d.pinion_tip_radius / d.base_radius) ** 2 - 1)
-    q1, q2 = (math.acos(d.base_radius / (d.gear_ratio * r)) for r in (d.inner_radius, d.outer_radius))
+    q1, q2 = (math.acos(d.base_radius / (d.speed_ratio * r)) for r in (d.inner_radius, d.outer_radius))
     on_top_1, on_top_2 = (q - (top - math.cos(q)) / math.sin(q) for q in (q1, q2))
     sweep = on_top_2 - (q1 - tip)
     for ratio in (d.contact_ratio, sweep * d.pinion_teeth / (2 * math.pi)):
@@ -82,7 +82,7 @@ def sampled_line(drive, c, count=100_001):
     Profile points of the rotated shaper are unwound from the base circle, (3-7) gives their place along its axis;
     nothing is said about which edges bound the line.
     """
-    m, g, rb = drive.gear_ratio, drive.shaft_angle, drive.base_radius
+    m, g, rb = drive.speed_ratio, drive.shaft_angle, drive.base_radius
     roll = np.linspace(0.0, math.sqrt((drive.pinion_tip_radius / rb) ** 2 - 1), count)
     alpha = c + roll
     along = rb * (1 + m * math.cos(g)) / (m * math.sin(g) * np.cos(alpha))
@@ -247,7 +247,7 @@ def test_conjugate_arm_is_constant():
     """The arm u cos q is r_b/m on every contact line: the mesh force's arm about the gear's axis never changes."""
     lines = CASE_I.contact_lines(np.linspace(CASE_I.exit_rotation, CASE_I.entry_rotation, 11))
     arm = -lines.contact_point[:, 1] * np.cos(lines.middle)
-    np.testing.assert_allclose(arm, CASE_I.base_radius / CASE_I.gear_ratio, rtol=1e-13)
+    np.testing.assert_allclose(arm, CASE_I.base_radius / CASE_I.speed_ratio, rtol=1e-13)
 
 
 @pytest.mark.parametrize(("ratio", "printed"), [("contact_ratio", 830.0), ("geometric_contact_ratio", 75.0)])

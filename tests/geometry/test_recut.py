@@ -49,7 +49,7 @@ every_drive = pytest.mark.parametrize("drive", some_drives, ids=label)
 def within(drive, roll, turn, points):
     """Whether points of the generated flank lie on the tooth and within the pinion's reach."""
     x, y, z, _ = points
-    c, s = np.cos(drive.gear_ratio * turn), np.sin(drive.gear_ratio * turn)
+    c, s = np.cos(drive.speed_ratio * turn), np.sin(drive.speed_ratio * turn)
     out = -(s * x + c * y)  # −y_p of the generating position
     top = -z * math.sin(drive.shaft_angle) - np.hypot(x, y) * math.cos(drive.shaft_angle)
     slack = 1e-12

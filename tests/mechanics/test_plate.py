@@ -346,7 +346,7 @@ class TestBody:
 
     def test_natural_frequencies(self):
         body = Body(self.drive, 0.03, nodal_circles=2, nodal_diameters=4)
-        frequencies = body.natural_frequencies()
+        frequencies = body.natural_frequencies_hz()
         assert frequencies.shape == (3, 5)
         a, h = body.outer_radius, body.thickness
         wave_speed = np.sqrt(200e9 * h**2 / (12 * (1 - 0.3**2) * 7840))
@@ -359,7 +359,7 @@ class TestBody:
     @given(st.floats(0.002, 0.05), st.floats(1.1, 3.0))
     @settings(deadline=None, derandomize=True, max_examples=20)
     def test_frequencies_grow_with_the_thickness(self, thickness_ratio, factor):
-        thin, thick = (Body(self.drive, thickness_ratio * f).natural_frequencies() for f in (1.0, factor))
+        thin, thick = (Body(self.drive, thickness_ratio * f).natural_frequencies_hz() for f in (1.0, factor))
         np.testing.assert_allclose(thick, factor * thin, rtol=1e-12)
 
     @pytest.mark.parametrize(

@@ -79,7 +79,7 @@ def test_lowest_natural_frequency_of_a_soft_input_shaft():
     # A soft input shaft moves everything as one body with the inertia seen from the pinion.
     box = replace(BOX, input_stiffness=1.0, output_stiffness=1e7, load_inertia=1.0)
     model = Torsional(box, arm="conjugate")
-    ratio = DRIVE.gear_ratio
+    ratio = DRIVE.speed_ratio
     inertia = box.pinion_inertia + ratio**2 * (box.gear_inertia + box.load_inertia)
     assert model.natural_frequencies()[0] == pytest.approx(math.sqrt(1.0 / inertia), rel=1e-5)
     assert model.natural_speeds() == pytest.approx(model.natural_frequencies() / DRIVE.gear_teeth)
@@ -125,7 +125,7 @@ def test_contact_path_and_conjugate_arm_against_dop853():
     exact = spectral_radius(numbers, speed, radius=on_path, switches=path.breakpoints, rtol=1e-12)
     assert radius_of(Torsional(BOX, path="contact_path"), speed) == pytest.approx(exact, abs=1e-9)
 
-    arm = DRIVE.base_radius / DRIVE.gear_ratio / math.cos(DRIVE.pressure_angle)
+    arm = DRIVE.base_radius / DRIVE.speed_ratio / math.cos(DRIVE.pressure_angle)
     exact = spectral_radius(numbers, speed, radius=lambda *_: (arm, 0.0))
     for path_name in ("skew_line", "contact_path", "centroid"):
         model = Torsional(BOX, arm="conjugate", path=path_name)

@@ -377,7 +377,7 @@ def undercut_condition(drive: Drive, tangents: Sequence[float]) -> xr.Dataset:
     s = meshing
     condition = s.compiled(s.undercut_condition, s.t, s.p, s.q, s.theta_star)
     gamma_m = np.pi - drive.shaft_angle
-    p, q = drive.gear_ratio * np.sin(gamma_m), 1.0 - drive.gear_ratio * np.cos(gamma_m)
+    p, q = drive.speed_ratio * np.sin(gamma_m), 1.0 - drive.speed_ratio * np.cos(gamma_m)
     tangent = np.asarray(tangents, dtype=float)
     return xr.Dataset(
         {

@@ -166,7 +166,7 @@ def moment_arms(model: ProportionalGearbox, count: int = 201) -> xr.Dataset:
                 ("pair", "time"), np.where(in_mesh, arms, np.nan), "Arm r cos α_c", "m", rtol=1e-9
             ),
             "conjugate": variable(
-                (), drive.base_radius / drive.gear_ratio, "Arm r_b1 N2/N1", "m", rtol=1e-12
+                (), drive.base_radius / drive.speed_ratio, "Arm r_b1 N2/N1", "m", rtol=1e-12
             ),
             "pairs": variable("time", in_mesh.sum(axis=0).astype(float), "Tooth pairs in mesh", "1"),
         },
@@ -322,16 +322,14 @@ def hsu_bands(model: ProportionalGearbox, speeds_rpm: tuple[float, float]) -> tu
     """
     speeds = (float(rad_per_s(speeds_rpm[0])), float(rad_per_s(speeds_rpm[1])))
     return band_speeds(
-        model.system, speeds, order=HIGHEST_ORDER, points=_HSU_POINTS, reach=0.0, expand=printed_expansion
+        model, speeds, order=HIGHEST_ORDER, points=_HSU_POINTS, reach=0.0, expand=printed_expansion
     )
 
 
 def block_bands(model: ProportionalGearbox, speeds_rpm: tuple[float, float]) -> tuple[SpeedBand, ...]:
     """First-order bands of speed when further frequencies in resonance join a pair; as :func:`hsu_bands`."""
     speeds = (float(rad_per_s(speeds_rpm[0])), float(rad_per_s(speeds_rpm[1])))
-    return band_speeds(
-        model.system, speeds, order=HIGHEST_ORDER, points=_HSU_POINTS, expand=printed_expansion
-    )
+    return band_speeds(model, speeds, order=HIGHEST_ORDER, points=_HSU_POINTS, expand=printed_expansion)
 
 
 def hsu_sections(figure: TorsionalFigure, values: ArrayLike) -> xr.Dataset:

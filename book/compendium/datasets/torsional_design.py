@@ -126,7 +126,7 @@ def arms(points: int) -> xr.Dataset:
             "printed": length(cosine * skew, "Arm r cos α_c on the skew line"),
             "contact_point": length(cosine * true, "Arm r cos α_c at the true contact point"),
             "conjugate": length(
-                np.full(fraction.shape, DRIVE.base_radius / DRIVE.gear_ratio), "Arm of the conjugate tooth"
+                np.full(fraction.shape, DRIVE.base_radius / DRIVE.speed_ratio), "Arm of the conjugate tooth"
             ),
         },
         coords={"fraction": fraction},

@@ -449,7 +449,7 @@ def hsu_bands(
     """
     speeds = (float(rad_per_s(speeds_rpm[0])), float(rad_per_s(speeds_rpm[1])))
     rows = [
-        band_speeds(replace_parameter(model, parameter, value).system, speeds, order=order, points=21)
+        band_speeds(replace_parameter(model, parameter, value), speeds, order=order, points=21)
         for value in values
     ]
     tables = {name: rpm(filled_rows(rows, name)) for name in ("lower", "upper", "centre")}

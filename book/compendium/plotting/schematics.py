@@ -284,7 +284,7 @@ def tregold_cones(drive: Drive) -> Figure:
     """
     figure, (axes,) = panels(1, 1, 4.4)
     _bare(axes)
-    pinion, gear = drive.pitch_radius, drive.pitch_radius / drive.gear_ratio
+    pinion, gear = drive.pitch_radius, drive.pitch_radius / drive.speed_ratio
     distance = float(np.hypot(pinion, gear)) if np.isclose(drive.shaft_angle, np.pi / 2) else None
     if distance is None:
         raise ValueError(
