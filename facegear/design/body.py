@@ -133,11 +133,6 @@ class BodyDesign:
     root_stress: float
     allowable_stress: float
 
-    @property
-    def stress_safe(self) -> bool:
-        """Whether (4-22) holds."""
-        return self.root_stress < self.allowable_stress
-
 
 def design_body(
     drive: Drive,

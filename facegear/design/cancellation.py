@@ -23,7 +23,6 @@ order is :func:`pinion_couplings`; for two equal pinions modes are even or odd a
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -43,9 +42,7 @@ from facegear.support.parameters import (
     MeshLoad,
     finite_array,
     integer_at_least,
-    nonnegative,
     positive,
-    whole_number,
     within,
 )
 
@@ -97,39 +94,6 @@ def phasing_sum(
         raise ValueError(f"wave_number must be whole, got {wave_number!r}")
     own_teeth = integer_at_least("order", order, 1) * teeth + numbers
     return np.asarray(np.exp(1j * own_teeth[..., np.newaxis] * angles).sum(axis=-1), dtype=complex)
-
-
-def silent_angles(gear_teeth: int, wave_number: int, lowest: float, highest: float, order: int = 1) -> Array:
-    """Total angles at which a second pinion silences the first one: odd multiples of π/(s N2 + n_1 ± n_2).
-
-    Parameters
-    ----------
-    gear_teeth, wave_number, order
-        As for :func:`phasing_sum`.
-    lowest, highest : float
-        Range of θ_c [rad].
-
-    Returns
-    -------
-    array
-        Ascending [rad].
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is not valid or the range is empty.
-    """
-    teeth = integer_at_least("order", order, 1) * integer_at_least("gear_teeth", gear_teeth, 1)
-    teeth += whole_number("wave_number", wave_number)
-    low = nonnegative("lowest", lowest, "rad")
-    high = positive("highest", highest, "rad")
-    if high <= low:
-        raise ValueError(f"highest must be above lowest, {low!r} rad; got {highest!r} rad")
-    if teeth == 0:
-        return np.empty(0)
-    step = math.pi / abs(teeth)
-    odd = np.arange(math.ceil((low / step - 1) / 2), math.floor((high / step - 1) / 2) + 1)
-    return np.asarray((2 * odd + 1) * step, dtype=float)
 
 
 def loud_wave_numbers(gear_teeth: int, pinions: int, highest: int, order: int = 1) -> tuple[int, ...]:

@@ -16,16 +16,12 @@ from facegear.floquet import multipliers as floquet
 from facegear.geometry import solids
 from facegear.mechanics import classical
 from facegear.plotting import interactive, style
+from tests.figures import texts
 
 DRIVE = Drive(26, 130, 3.175e-3)
 TOOTH = meshing_arrays.tooth_and_contact_lines(DRIVE, lines=5, points=9)
 RATIOS = meshing_arrays.contact_ratios(DRIVE, (25, 26, 27))
 LENGTH = meshing_arrays.mesh_length(DRIVE, 1.5, samples=21)
-
-
-def texts(figure):
-    found = [text.get_text() for text in figure.findobj(mpl.text.Text)]
-    return " ".join(found)
 
 
 @pytest.mark.parametrize(

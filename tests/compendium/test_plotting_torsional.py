@@ -1,16 +1,12 @@
 """Figures of chapter 7 draw what they are given."""
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 
 from compendium.datasets import torsional as arrays
 from compendium.plotting import torsional as draw
 from facegear.mechanics.gearboxes import FIGURES
-
-
-def texts(figure):
-    return " ".join(text.get_text() for text in figure.findobj(mpl.text.Text))
+from tests.figures import texts
 
 
 def test_moment_arms():

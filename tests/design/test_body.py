@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import pytest
 
 from facegear.design import body as design
@@ -52,6 +50,5 @@ def test_design_flow():
     assert result.allowable_stress == pytest.approx(439.9e6 / 1.5)
     # With fewer teeth of the same pitch the pinion is smaller and the force at its teeth larger.
     small = constant_diametral_pitch(22)
-    assert result.stress_safe
+    assert result.root_stress < result.allowable_stress
     assert root_stress(small, needed.power, needed.pinion_speed) > result.allowable_stress
-    assert not replace(result, root_stress=result.allowable_stress * 1.001).stress_safe

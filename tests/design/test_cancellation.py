@@ -16,7 +16,6 @@ from facegear.design.cancellation import (
     mode_content,
     phasing_sum,
     pinion_couplings,
-    silent_angles,
     tongue_of,
     weakened,
 )
@@ -55,13 +54,10 @@ def test_equally_spaced_pinions_are_all_or_nothing(pinions, teeth):
         assert abs(phasing_sum(teeth, angles, number)) == pytest.approx(expected, abs=1e-11)
 
 
-@pytest.mark.parametrize("number", [-155, -4, 0, 3])
+@pytest.mark.parametrize("number", [-4, 0, 3, 7])
 def test_silent_angles_are_silent(number):
-    angles = silent_angles(155, number, 1.0, 2.0)
-    assert abs(angles.size - (155 + number) / (2 * math.pi)) <= 1
-    for angle in angles:
-        assert abs(phasing_sum(155, [0.0, angle], number)) < 1e-11
-    assert (np.diff(angles) > 0).all()
+    for k in range(20):
+        assert abs(phasing_sum(155, [0.0, (2 * k + 1) * math.pi / (155 + number)], number)) < 1e-11
 
 
 def test_a_pair_is_in_resonance_at_its_speed():
@@ -91,7 +87,7 @@ def test_weak_tongues_grow_in_proportion_to_the_sum(travel):
 
 
 def test_silenced_tongue_is_gone_and_the_opposite_sign_would_not_silence_it():
-    angle = float(silent_angles(155, PAIR.wave_number, 1.5, 1.6)[0])
+    angle = 75 * math.pi / (155 + PAIR.wave_number)
     model = replace(EXAMPLE_B, pinion_angles=(0.0, angle))
     factor = 0.005
     alone = tongue_of(weakened(EXAMPLE_B, factor), PAIR, 0.04 * factor, 0.005 * factor)
@@ -130,7 +126,6 @@ def test_content_of_modes_is_whole():
         (lambda: phasing_sum(155, [0.0], 0.5), "whole"),
         (lambda: phasing_sum(0, [0.0], 0), "gear_teeth"),
         (lambda: phasing_sum(155, [0.0], 0, 0), "order"),
-        (lambda: silent_angles(155, 0, 2.0, 1.0), "highest"),
         (lambda: loud_wave_numbers(155, 0, 6), "pinions"),
         (lambda: weakened(EXAMPLE_B, 0.0), "factor"),
         (lambda: WavePair(Wave(5, 0), Wave(0, 0)).speed(EXAMPLE_B), "waves of the disk"),

@@ -148,10 +148,6 @@ FUNCTIONS = {
     ),
     "centrifugal_stress": (plate.centrifugal_stress, {"x": 0.7, "bore_ratio": 0.37, "poissons_ratio": 0.29}),
     "phase_split": (lambda angle: phase_split(DRIVE, [0.0, angle]), {"angle": 2.1}),
-    "silent_angles": (
-        cancellation.silent_angles,
-        {"gear_teeth": 200, "wave_number": 3, "lowest": 0.1, "highest": 0.7, "order": 2},
-    ),
     "phasing_sum": (
         lambda angle, **x: cancellation.phasing_sum(pinion_angles=[0.0, angle], **x),
         {"gear_teeth": 200, "wave_number": 3, "order": 2, "angle": 0.3},

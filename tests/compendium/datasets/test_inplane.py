@@ -2,11 +2,9 @@
 
 from dataclasses import replace
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 
-from compendium import reference
 from compendium.datasets import inplane as arrays
 from compendium.datasets import power as power_arrays
 from compendium.plotting import inplane as draw
@@ -17,21 +15,11 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES
 from facegear.mechanics.edge_stiffness import driving_force
 from facegear.mechanics.inplane import EdgeLoadStress
-from facegear.support import labelled
 from facegear.support.parameters import rad_per_s, watt
+from tests.figures import check_round_trip, texts
 
 PINION_SPEED = float(rad_per_s(5000.0))
 MODEL = FIGURES["4.4a"].model(power=0.0, power_speed=PINION_SPEED)
-
-
-def texts(drawing):
-    drawing.canvas.draw()
-    return " ".join(text.get_text() for text in drawing.findobj(mpl.text.Text))
-
-
-def check_round_trip(dataset, tmp_path):
-    stored = labelled.load(labelled.save(dataset, tmp_path / "figure.nc"))
-    assert all(row.largest_absolute == 0.0 for row in reference.compare(dataset, stored))
 
 
 def test_harmonics_are_those_of_the_field(tmp_path):

@@ -6,7 +6,6 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from compendium import reference
 from compendium.datasets import pinions as arrays
 from compendium.plotting import cancellation as charts
 from compendium.plotting import pinions as draw
@@ -16,19 +15,10 @@ from facegear.geometry.drive import Drive
 from facegear.mechanics.cases import EXAMPLE_A, EXAMPLE_B
 from facegear.support import labelled
 from facegear.support.parameters import rad_per_s
+from tests.figures import check_round_trip, texts
 
 PITCH = float(np.degrees(EXAMPLE_B.body.drive.angular_pitch))
 SPEEDS = [820.0, 868.0, 880.0]
-
-
-def texts(drawing):
-    drawing.canvas.draw()
-    return " ".join(text.get_text() for text in drawing.findobj(mpl.text.Text))
-
-
-def check_round_trip(dataset, tmp_path):
-    stored = labelled.load(labelled.save(dataset, tmp_path / "figure.nc"))
-    assert all(row.largest_absolute == 0.0 for row in reference.compare(dataset, stored))
 
 
 @pytest.fixture(scope="module")

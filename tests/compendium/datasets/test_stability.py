@@ -5,11 +5,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from compendium import reference
 from compendium.datasets import stability as arrays
 from facegear.floquet import multipliers as floquet
 from facegear.mechanics import classical
-from facegear.support import labelled
+from tests.figures import check_round_trip
 from tests.independent import classical as independent
 
 GEARS = classical.gear_pair(1.1, 1.563, droop=0.4, shaft_damping=0.02)
@@ -34,8 +33,7 @@ def mathieu_at(frequency):
     ids=lambda dataset: next(iter(dataset.data_vars)),
 )
 def test_every_figure_survives_the_round_trip_through_its_file(dataset, tmp_path):
-    stored = labelled.load(labelled.save(dataset, tmp_path / "figure.nc"))
-    assert all(row.largest_absolute == 0.0 for row in reference.compare(dataset, stored))
+    check_round_trip(dataset, tmp_path)
 
 
 def test_multipliers_of_the_swing_are_reciprocal_and_the_motion_grows_by_the_larger():

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from compendium import reference
 from compendium.datasets import disk as disk_arrays
 from compendium.datasets import transverse as arrays
 from compendium.plotting import transverse as draw
@@ -14,8 +13,8 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.mechanics.cases import CASE_1, FIGURES
 from facegear.mechanics.mode_shapes import plate_modes
 from facegear.plotting import modes
-from facegear.support import labelled
 from facegear.support.parameters import rad_per_s
+from tests.figures import check_round_trip, texts
 
 MODEL = FIGURES["4.4a"].model()
 
@@ -28,16 +27,6 @@ def figure():
 @pytest.fixture(scope="module")
 def line():
     return arrays.convergence(FIGURES["4.4c"].model(), [(1, 3), (1, 2)], [500.0, 540.0, 600.0, 620.0], jobs=1)
-
-
-def texts(drawing):
-    drawing.canvas.draw()
-    return " ".join(text.get_text() for text in drawing.findobj(mpl.text.Text))
-
-
-def check_round_trip(dataset, tmp_path):
-    stored = labelled.load(labelled.save(dataset, tmp_path / "figure.nc"))
-    assert all(row.largest_absolute == 0.0 for row in reference.compare(dataset, stored))
 
 
 def test_maps_hold_growth_rates_of_single_cells(figure, tmp_path):
