@@ -45,7 +45,7 @@ test-lowest: environment ## run the tests with the oldest versions that pyprojec
 	@$(PYTHON) tools/test_lowest.py -n 2 -m 'not slow and not book'
 
 test-book: environment ## look at the built book in Chromium (make book first)
-	@$(PYTEST) -n 2 --dist loadscope -m book
+	@$(PYTEST) -n 2 --dist loadscope -m book tests/book
 
 lint: environment ## check style, types, import order, notebooks
 	$(PYTHON) -m ruff check .
