@@ -27,13 +27,13 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from facegear.floquet.collocation import gauss_rule
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array, PiecewiseChebyshev
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import coordinates
 from facegear.mechanics.rotation import DiskWaves
@@ -45,8 +45,8 @@ from facegear.support.parameters import (
     positive,
     within,
 )
+from facegear.support.types import ComplexArray, FloatArray
 
-ComplexArray = NDArray[np.complex128]
 Kind = Literal["sum", "difference"]
 
 # Gauss nodes on each smooth piece of the period.
@@ -311,11 +311,11 @@ def _shape_products(shape: PiecewiseChebyshev, harmonic: int) -> ComplexArray:
     return np.asarray((phi.T * turning) @ phi, dtype=complex)
 
 
-def _mean_matrices(system: PeriodicSystem) -> tuple[Array, Array, Array]:
+def _mean_matrices(system: PeriodicSystem) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Mass, damping and stiffness with the loads averaged over the period."""
     means = [_shape_products(load.shape, 0).real for load in system.loads]
 
-    def averaged(name: str) -> Array:
+    def averaged(name: str) -> FloatArray:
         loads = zip(system.loads, means, strict=True)
         return np.asarray(getattr(system, name) + sum(getattr(load, name) * mean for load, mean in loads))
 

@@ -27,7 +27,8 @@ from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import Following, driving_force, unit_stiffness
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import FloatArray, positive, within
+from facegear.support.parameters import positive, within
+from facegear.support.types import FloatArray
 
 # Powers, over the critical one of the disk alone, at which a disk is tried.
 _FIRST, _RATIO, _LAST = 1 / 8, 1.15, 100.0

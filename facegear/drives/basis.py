@@ -18,7 +18,8 @@ from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.edge_stiffness import complete_harmonics
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, Body
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import FloatArray, integer_at_least, within
+from facegear.support.parameters import integer_at_least, within
+from facegear.support.types import FloatArray
 
 
 def with_basis(model: Transverse, nodal_circles: int, nodal_diameters: int) -> Transverse:

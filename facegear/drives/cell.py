@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from facegear.floquet.labels import combination
@@ -18,8 +17,7 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.transverse import Transverse, shape_vector
 from facegear.support.parameters import positive
-
-ComplexArray = NDArray[np.complex128]
+from facegear.support.types import ComplexArray
 
 UNSTABLE = 1e-8
 """Growth in a period, max|λ| − 1, from which a cell counts as unstable [-], as for tongues."""

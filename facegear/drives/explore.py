@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from facegear.drives.cell import UNSTABLE, CellDetail, cell_detail
 from facegear.floquet.models import Model, replace_parameter
 from facegear.maps.stability_map import stability_map
-from facegear.support.parameters import FloatArray, finite, integer_at_least, keep, positive
+from facegear.support.parameters import finite, integer_at_least, keep, positive
+from facegear.support.types import FloatArray
 
 Settings = Mapping[str, Any]
 """Names of controls to their values."""

@@ -23,7 +23,7 @@ from facegear.drives.cell_figure import RING, cell_figure, described, draw_detai
 from facegear.drives.explore import Choice, Control, Quantity, Study, View, map_stages, reading_map, unstable
 from facegear.floquet.models import Model, replace_parameter
 from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, WIDTH, styled
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 
 _REFUSALS = (TypeError, ValueError, ArithmeticError)
 _COLOURS = [[k / 10, to_hex(GROWTH(k / 10))] for k in range(11)]

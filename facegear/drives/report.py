@@ -33,7 +33,8 @@ from facegear.mechanics.edge_stiffness import Following, complete_harmonics, dri
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
 from facegear.mechanics.transverse import Transverse, nominal_pinion_mass
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import FloatArray, rad_per_s, rpm
+from facegear.support.parameters import rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)

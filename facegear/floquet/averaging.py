@@ -18,13 +18,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.modal import ModalExpansion
+from facegear.support.types import ComplexArray, FloatArray
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Interval = tuple[float, float, float]
 
 # Relative sizes, to the frequencies, below which a rate or a coupling is rounding; couplings that count leave
@@ -59,7 +58,7 @@ class ResonanceBlock:
 
     members: tuple[int, ...]
     shifts: tuple[int, ...]
-    signed_frequencies: Array
+    signed_frequencies: FloatArray
     coupling: ComplexArray
     modes: int
 
@@ -73,7 +72,7 @@ class ResonanceBlock:
         matrix: ComplexArray = 1j * turning[..., None] * np.eye(len(self.members)) + self.coupling
         return matrix
 
-    def growth_rate(self, frequency: ArrayLike) -> Array:
+    def growth_rate(self, frequency: ArrayLike) -> FloatArray:
         """Largest growth rate [1/s] at parametric frequencies [rad/s], shape of ``frequency``."""
         matrix = self.matrix(frequency)
         if len(self.members) == 2:

@@ -25,9 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.floquet.periodic import ContactLoad, LoadColumn, PeriodicSystem
-from facegear.floquet.piecewise import Array, PiecewiseChebyshev, merge_breakpoints
-
-ComplexArray = NDArray[np.complex128]
+from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
+from facegear.support.types import ComplexArray, FloatArray
 
 #: Gauss nodes a panel.
 DEFAULT_NODES = 16
@@ -88,7 +87,7 @@ class FreeModes:
         )
 
     @classmethod
-    def _of(cls, mass: Array, damping: Array, stiffness: Array) -> FreeModes:
+    def _of(cls, mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FreeModes:
         n = mass.shape[-1]
         inverse = np.linalg.inv(np.linalg.cholesky(mass))
         root = inverse.swapaxes(-1, -2)
@@ -136,18 +135,18 @@ class FreeModes:
         """Number of modes n."""
         return int(self.eigenvalues.shape[-1])
 
-    def state_from_real(self) -> Array:
+    def state_from_real(self) -> FloatArray:
         """Matrix from (Re y, Im y) to (q, q̇), shape (..., 2n, 2n)."""
         both = np.concatenate([self.displacement, self.velocity], axis=-2)
         return np.concatenate([both.real, -both.imag], axis=-1)
 
-    def real_from_state(self) -> Array:
+    def real_from_state(self) -> FloatArray:
         """Matrix from (q, q̇) to (Re y, Im y), shape (..., 2n, 2n)."""
         return np.concatenate([self.coordinates.real, self.coordinates.imag], axis=-2)
 
 
 @lru_cache(maxsize=16)
-def gauss_rule(nodes: int) -> tuple[Array, Array, Array]:
+def gauss_rule(nodes: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Gauss-Legendre nodes and weights on [0, 1], and a_ij = ∫_0^{x_i} l_j, shape (nodes, nodes)."""
     x, weights = np.polynomial.legendre.leggauss(nodes)
     degrees = np.arange(nodes)
@@ -161,14 +160,14 @@ def gauss_rule(nodes: int) -> tuple[Array, Array, Array]:
 
 
 @lru_cache(maxsize=16)
-def _last_coefficients(nodes: int) -> Array:
+def _last_coefficients(nodes: int) -> FloatArray:
     """Matrix from values at Gauss nodes to the last two Legendre coefficients, shape (2, nodes)."""
     x, weights, _ = gauss_rule(nodes)
     last = np.polynomial.legendre.legvander(2.0 * x - 1.0, nodes - 1)[:, -2:]
     return np.asarray((last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T, dtype=float)
 
 
-def panel_edges(breakpoints: Array, angle: float, panel_angle: float) -> Array:
+def panel_edges(breakpoints: FloatArray, angle: float, panel_angle: float) -> FloatArray:
     """Return ends of panels: all breakpoints, and points between for a fastest motion of `angle` a period."""
     ends = np.append(breakpoints[1:], 1.0)
     counts = np.ceil((ends - breakpoints) * angle / panel_angle).astype(int)
@@ -195,10 +194,10 @@ class _Panels:
         G.
     """
 
-    force_on_force: Array
-    force_on_state: Array
-    free: Array
-    input: Array
+    force_on_force: FloatArray
+    force_on_state: FloatArray
+    free: FloatArray
+    input: FloatArray
 
     def halved(self, chosen: NDArray[np.bool_], halves: _Panels) -> _Panels:
         """Return the panels with the two halves of each chosen one in its place."""
@@ -210,7 +209,7 @@ class _Panels:
         )
 
 
-def _in_place(chosen: NDArray[np.bool_], whole: Array, halves: Array, axis: int) -> Array:
+def _in_place(chosen: NDArray[np.bool_], whole: FloatArray, halves: FloatArray, axis: int) -> FloatArray:
     """Put halves, two for each chosen entry along an axis, in the place of these entries."""
     new = np.repeat(chosen, 1 + chosen)
     kept = np.count_nonzero(~chosen)
@@ -218,13 +217,13 @@ def _in_place(chosen: NDArray[np.bool_], whole: Array, halves: Array, axis: int)
     return np.concatenate([whole.compress(~chosen, axis), halves], axis).take(place, axis)
 
 
-def _split(matrix: ComplexArray) -> Array:
+def _split(matrix: ComplexArray) -> FloatArray:
     """Real rows (Re, −Im), so that Re(matrix y) = rows (Re y, Im y)."""
     return np.concatenate([matrix.real, -matrix.imag], axis=-1)
 
 
 def _build(
-    systems: Sequence[PeriodicSystem], modes: FreeModes, nodes: int, start: Array, length: Array
+    systems: Sequence[PeriodicSystem], modes: FreeModes, nodes: int, start: FloatArray, length: FloatArray
 ) -> _Panels:
     x, weights, integration = gauss_rule(nodes)
     periods = np.array([system.period for system in systems])
@@ -237,11 +236,11 @@ def _build(
     half = np.exp(exponents / 2.0)
 
     # Modes act on the last axis of what is known at all nodes of all panels: (S or 1, P, N p, n).
-    def values(part: Callable[[ContactLoad], PiecewiseChebyshev]) -> Array:
+    def values(part: Callable[[ContactLoad], PiecewiseChebyshev]) -> FloatArray:
         found = _at_nodes(systems, part, fractions)
         return found.reshape(len(found), count * nodes * p, n)
 
-    def readings(by: Array, factors: ComplexArray) -> ComplexArray:
+    def readings(by: FloatArray, factors: ComplexArray) -> ComplexArray:
         return np.asarray((by @ factors).reshape(systems_, count, nodes, p, n), dtype=complex)
 
     phi = values(lambda load: load.shape)
@@ -295,8 +294,10 @@ def _weight(load: ContactLoad) -> PiecewiseChebyshev:
 
 
 def _at_nodes(
-    systems: Sequence[PeriodicSystem], part: Callable[[ContactLoad], PiecewiseChebyshev], fractions: Array
-) -> Array:
+    systems: Sequence[PeriodicSystem],
+    part: Callable[[ContactLoad], PiecewiseChebyshev],
+    fractions: FloatArray,
+) -> FloatArray:
     """Values of one function of each load, (S, P, N, p, components), or (1, ...) if all systems share them."""
     functions = [[part(load) for load in system.loads] for system in systems]
     if all(own is first for row in functions[1:] for own, first in zip(row, functions[0], strict=True)):
@@ -355,7 +356,7 @@ class FreeMotion:
         self._known = (known, self._halve_unresolved_panels(known, nodes))
         self.kicks = [self._kick_data(system) for system in systems]
 
-    def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> Array:
+    def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> FloatArray:
         """Halve panels until the contact forces of all initial states are resolved at the given values.
 
         Returns these forces.
@@ -387,7 +388,7 @@ class FreeMotion:
             f"the contact forces are too rough: {self.edges.size - 1} panels do not resolve them"
         )
 
-    def _kick_data(self, system: PeriodicSystem) -> list[tuple[int, int, Array, Array]]:
+    def _kick_data(self, system: PeriodicSystem) -> list[tuple[int, int, FloatArray, FloatArray]]:
         """Panel, load, φ and Δφ̇ of each slope jump of a load with total rate."""
         found = []
         for a, load in enumerate(system.loads):
@@ -399,7 +400,7 @@ class FreeMotion:
                 found.append((panel, a, load.shape(at), jump))
         return found
 
-    def transition_matrices(self, column: LoadColumn) -> Array:
+    def transition_matrices(self, column: LoadColumn) -> FloatArray:
         """Φ in the modal coordinates (Re y, Im y) for each value of a column, shape (V, 2n, 2n)."""
         panels = self.panels
         if len(self.systems) > 1:
@@ -416,7 +417,7 @@ class FreeMotion:
         return np.concatenate(parts)
 
     @staticmethod
-    def _forces(column: LoadColumn, panels: _Panels) -> Array:
+    def _forces(column: LoadColumn, panels: _Panels) -> FloatArray:
         """Contact forces at the nodes of each panel, for unit modal coordinates at its start, (V, P, N p, 2n)."""
         size = panels.input.shape[-1]
         repeats = size // max(column.mass.shape[1], 1)
@@ -429,7 +430,7 @@ class FreeMotion:
                 right += factor * panels.force_on_state[order]
         return np.asarray(np.linalg.solve(left, right), dtype=float)
 
-    def transition_matrices_to(self, instants: Sequence[float], column: LoadColumn) -> Array:
+    def transition_matrices_to(self, instants: Sequence[float], column: LoadColumn) -> FloatArray:
         """Φ from the period's origin to some of the instants, for one value, shape (K, 2n, 2n); as Φ of the period."""
         steps = self._steps(column)[0]
         reached = [np.eye(steps.shape[-1])]
@@ -438,10 +439,10 @@ class FreeMotion:
         ends = [int(np.argmin(np.abs(self.edges - instant))) for instant in instants]
         return np.stack([reached[end] for end in ends])
 
-    def _chunk(self, column: LoadColumn) -> Array:
+    def _chunk(self, column: LoadColumn) -> FloatArray:
         return chain(self._steps(column))
 
-    def _steps(self, column: LoadColumn) -> Array:
+    def _steps(self, column: LoadColumn) -> FloatArray:
         """Transition matrices of the panels, shape (V, P, 2n, 2n)."""
         known, forces = self._known
         if not np.array_equal(known.stacked(), column.stacked()):
@@ -454,10 +455,10 @@ class FreeMotion:
                     steps[own, panel] = steps[own, panel] @ matrices
         return np.asarray(steps, dtype=float)
 
-    def _kicks(self, number: int, masses: Array) -> dict[int, Array]:
+    def _kicks(self, number: int, masses: FloatArray) -> dict[int, FloatArray]:
         """Jumps of the modal coordinates of a system before a panel, each of shape (V, 2n, 2n)."""
         system, data = self.systems[number], self.kicks[number]
-        kicks: dict[int, Array] = {}
+        kicks: dict[int, FloatArray] = {}
         if not data:
             return kicks
         n = system.size
@@ -475,7 +476,7 @@ class FreeMotion:
         return kicks
 
 
-def chain(steps: Array) -> Array:
+def chain(steps: FloatArray) -> FloatArray:
     """Product steps[:, -1] ... steps[:, 1] steps[:, 0], by pairs, shape (V, m, d, d) -> (V, d, d)."""
     while steps.shape[1] > 1:
         even = steps.shape[1] - steps.shape[1] % 2
@@ -493,7 +494,7 @@ def is_suitable(system: PeriodicSystem) -> bool:
     return True
 
 
-def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) -> Array:
+def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) -> FloatArray:
     """Transition matrices of the state (q, q̇) from the period's origin to some fractions of it, shape (K, 2n, 2n).
 
     Where an instant is a breakpoint with a velocity kick, the state is that just before it.
@@ -513,7 +514,7 @@ def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) ->
 
 def transition_matrices(
     systems: Sequence[PeriodicSystem], nodes: int = DEFAULT_NODES, panel_angle: float = DEFAULT_PANEL_ANGLE
-) -> Array:
+) -> FloatArray:
     """Floquet transition matrices of the state (q, q̇), shape (V, 2n, 2n).
 
     Parameters

@@ -13,16 +13,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from facegear.floquet.collocation import FreeMotion, UnsuitableSystemError
 from facegear.floquet.lobatto import interleaved, lobatto_points, values_to_coefficients
 from facegear.floquet.multipliers import AdaptiveMagnus, Method, transition_matrices
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
-from facegear.floquet.piecewise import Array
 from facegear.support.parameters import finite_array
-
-ComplexArray = NDArray[np.complex128]
+from facegear.support.types import ComplexArray, FloatArray
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
@@ -46,7 +44,7 @@ def column_spectral_radii(
     dampings: ArrayLike,
     stiffnesses: ArrayLike,
     method: Method | None = None,
-) -> Array:
+) -> FloatArray:
     """Largest modulus of the Floquet multipliers for many values of the load parameters.
 
     Parameters
@@ -70,7 +68,7 @@ def column_spectral_radii(
         Naming the parameter, if shapes do not match or values are negative or not finite.
     """
     column = _load_column(len(system.loads), masses, dampings, stiffnesses)
-    evaluate: Callable[[LoadColumn], Array]
+    evaluate: Callable[[LoadColumn], FloatArray]
     mobility = 1.0
     if method is None:
         try:
@@ -82,7 +80,7 @@ def column_spectral_radii(
             mobility = float(motion.mobility.max(initial=0.0))
     if method is not None:
 
-        def evaluate(part: LoadColumn) -> Array:
+        def evaluate(part: LoadColumn) -> FloatArray:
             systems = [
                 system.replace_loads(mass=m, damping=c, stiffness=k)
                 for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
@@ -97,7 +95,7 @@ def column_spectral_radii(
 
 def family_spectral_radii(
     system_at: Callable[[float], PeriodicSystem], values: ArrayLike, method: Method | None = None
-) -> Array:
+) -> FloatArray:
     """Largest modulus of the Floquet multipliers along any one parameter of a model.
 
     Parameters
@@ -119,7 +117,7 @@ def family_spectral_radii(
 
     chosen = GENERAL_ROUTE if method is None else method
 
-    def evaluate(part: Array) -> Array:
+    def evaluate(part: FloatArray) -> FloatArray:
         return transition_matrices([system_at(float(value)) for value in part], chosen)
 
     return interpolated_spectral_radii(evaluate, points)
@@ -149,9 +147,9 @@ class _StraightLine:
     stays smooth however heavy the mass.
     """
 
-    start: Array
-    end: Array
-    variable: Array
+    start: FloatArray
+    end: FloatArray
+    variable: FloatArray
     mobility: float
     heaviest: int | None
 
@@ -177,7 +175,7 @@ class _StraightLine:
         mass = start[heaviest] + s * (end - start)[heaviest]
         return cls(start, end, 1.0 / (1.0 + mobility * mass), mobility, heaviest)
 
-    def column(self, t: Array) -> LoadColumn:
+    def column(self, t: FloatArray) -> LoadColumn:
         """Load parameters at values of the variable."""
         s = t
         if self.heaviest is not None:
@@ -187,8 +185,8 @@ class _StraightLine:
 
 
 def interpolated_spectral_radii(
-    evaluate: Callable[[Array], Array], points: Array, tolerance: float = TOLERANCE
-) -> Array:
+    evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float = TOLERANCE
+) -> FloatArray:
     """Largest modulus of the eigenvalues of an analytic matrix function of one variable at many points.
 
     The matrices are evaluated at Chebyshev points of the variable and interpolated. Where some of their eigenvalues
@@ -218,7 +216,7 @@ def interpolated_spectral_radii(
     return _spectral_radii((series if block is None else block)(points))
 
 
-def _spectral_radii(matrices: Array) -> Array:
+def _spectral_radii(matrices: FloatArray) -> FloatArray:
     return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
 
 
@@ -228,10 +226,12 @@ class _Series:
 
     low: float
     high: float
-    values: Array
+    values: FloatArray
 
     @classmethod
-    def resolved(cls, evaluate: Callable[[Array], Array], points: Array, tolerance: float) -> _Series | None:
+    def resolved(
+        cls, evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float
+    ) -> _Series | None:
         """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
         low, high = float(points.min()), float(points.max())
         degree = _LOWEST_DEGREE
@@ -250,13 +250,13 @@ class _Series:
         return int(self.values.shape[0]) - 1
 
     @property
-    def between(self) -> Array:
+    def between(self) -> FloatArray:
         """Points that the rule of twice the degree adds, shape (K,)."""
         nodes = lobatto_points(2 * self.degree)[1::2]
         return (self.low + self.high) / 2.0 + (self.high - self.low) / 2.0 * nodes
 
     @cached_property
-    def coefficients(self) -> Array:
+    def coefficients(self) -> FloatArray:
         """Chebyshev coefficients, (K + 1, d, d)."""
         return np.tensordot(values_to_coefficients(self.degree), self.values, axes=1)
 
@@ -274,7 +274,7 @@ class _Series:
         exponent: float = (degree - self.degree) / (self.degree - middle)
         return float(self.tail * fall**exponent)
 
-    def __call__(self, points: Array) -> Array:
+    def __call__(self, points: FloatArray) -> FloatArray:
         """Interpolate at points (V,), shape (V, d, d)."""
         local = (points - (self.low + self.high) / 2.0) / ((self.high - self.low) / 2.0)
         basis = np.polynomial.chebyshev.chebvander(np.clip(local, -1.0, 1.0), self.degree)
@@ -306,7 +306,7 @@ def _leading_block(series: _Series, tolerance: float, most: int) -> _Series | No
         series = replace(series, values=interleaved(series.values, between))
 
 
-def _ordered_eigenvectors(matrices: Array) -> tuple[Array, ComplexArray]:
+def _ordered_eigenvectors(matrices: FloatArray) -> tuple[FloatArray, ComplexArray]:
     """Moduli of eigenvalues, (K, d), descending, and their vectors, (K, d, d)."""
     eigenvalues, vectors = np.linalg.eig(matrices)
     order = np.argsort(-np.abs(eigenvalues), axis=-1, kind="stable")
@@ -314,7 +314,7 @@ def _ordered_eigenvectors(matrices: Array) -> tuple[Array, ComplexArray]:
     return moduli, np.take_along_axis(vectors, order[:, None, :], axis=-1).astype(complex)
 
 
-def _count_apart(moduli: Array) -> int | None:
+def _count_apart(moduli: FloatArray) -> int | None:
     """How many eigenvalues are larger than the others by the largest factor, from moduli (K, d), descending."""
     counts = np.arange(1, int(_LARGEST_BLOCK * moduli.shape[1]) + 1)
     if counts.size == 0:
@@ -324,7 +324,7 @@ def _count_apart(moduli: Array) -> int | None:
     return int(counts[ratios.argmin()]) if ratios.min() <= _APART else None
 
 
-def _blocks(matrices: Array, vectors: ComplexArray) -> Array | None:
+def _blocks(matrices: FloatArray, vectors: ComplexArray) -> FloatArray | None:
     """Blocks of matrices (K, d, d) on the spans of their vectors (K, d, r), or None if these are close to dependent."""
     count = vectors.shape[-1]
     # Orthonormal coordinates, the first r of which span the subspace of the middle matrix: vectors of a conjugate

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.averaging import (
@@ -36,8 +36,8 @@ from facegear.floquet.modal import ModalExpansion, modal_expansion
 from facegear.floquet.models import Model
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import ascending, integer_at_least, nonnegative
+from facegear.support.types import FloatArray
 
-Array = NDArray[np.float64]
 Kind = Literal["sum", "difference"]
 
 _ROUNDING = 1e-11  # Relative size below which a rate is rounding.
@@ -90,7 +90,7 @@ class ResonanceBand:
             return f"({self.k}+{self.j})/{self.order}"
         return f"({self.j}-{self.k})/{self.order}"
 
-    def growth(self, frequency: ArrayLike) -> Array:
+    def growth(self, frequency: ArrayLike) -> FloatArray:
         """Growth rate σ [1/s] of this resonance at parametric frequencies [rad/s], negative where it decays."""
         return self.block.growth_rate(frequency)
 

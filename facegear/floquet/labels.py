@@ -19,9 +19,8 @@ from scipy.linalg import eigh
 from facegear.floquet.collocation import UnsuitableSystemError, transition_matrices_to
 from facegear.floquet.multipliers import Method, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array
+from facegear.support.types import ComplexArray, FloatArray
 
-ComplexArray = NDArray[np.complex128]
 Kind = Literal["sum", "difference", "mean"]
 
 # Instants of the period over which the part of each mode in the motion is averaged.
@@ -133,7 +132,7 @@ class _MeanModes:
         # Nearly dependent motions, as at critical damping, only blur the shares.
         return cls(values, numbers, np.linalg.pinv(right) @ energy)
 
-    def action(self, state: ComplexArray) -> Array:
+    def action(self, state: ComplexArray) -> FloatArray:
         """Energy over frequency of each natural motion in a state, in parts of the whole."""
         energy = np.abs(self.coordinates @ state) ** 2
         frequency = np.abs(self.eigenvalues.imag)
@@ -156,7 +155,7 @@ def _critical_state(system: PeriodicSystem, critical: complex, method: Method | 
     return np.asarray(vectors[:, np.abs(values - critical).argmin()], dtype=complex)
 
 
-def _strongest_pair(modes: _MeanModes, action: Array, frequency: float) -> Combination:
+def _strongest_pair(modes: _MeanModes, action: FloatArray, frequency: float) -> Combination:
     """Pair of natural motions in step with one another that has the largest part in the motion."""
     best, chosen = -1.0, Combination(0, 0, "mean", 0)
     oscillating = np.flatnonzero(modes.numbers > 0)

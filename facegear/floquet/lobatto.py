@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 
 
 def lobatto_points(degree: int) -> FloatArray:

@@ -18,15 +18,13 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import FourierSeries
 from facegear.support.parameters import integer_at_least
+from facegear.support.types import ComplexArray, FloatArray
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Kind = Literal["sum", "difference"]
 
 # Relative size below which an entry or a rate is rounding.
@@ -51,7 +49,7 @@ class ModalExpansion:
         ω = 2π/T0 of the system as given [rad/s].
     """
 
-    frequencies: Array
+    frequencies: FloatArray
     coupling: ComplexArray
     mean_growth_rate: float
     parametric_frequency: float
@@ -62,12 +60,12 @@ class ModalExpansion:
         return len(self.coupling) // 2
 
     @cached_property
-    def signed_frequencies(self) -> Array:
+    def signed_frequencies(self) -> FloatArray:
         """Ω_a = ±ω_i [rad/s], shape (2m,)."""
         return np.concatenate([self.frequencies, -self.frequencies])
 
     @cached_property
-    def strength(self) -> Array:
+    def strength(self) -> FloatArray:
         """√|Â_{s,ab} Â_{−s,ba}| [1/s], shape of ``coupling``: independent of how eigenvectors are scaled."""
         return np.sqrt(np.abs(self.coupling * self.coupling[::-1].transpose(0, 2, 1)))
 
@@ -90,12 +88,12 @@ class StandardForm:
         ω = 2π/T0 [rad/s].
     """
 
-    frequencies: Array
-    F0: Array
-    D: Array
-    E: Array
-    F: Array
-    G: Array
+    frequencies: FloatArray
+    F0: FloatArray
+    D: FloatArray
+    E: FloatArray
+    F: FloatArray
+    G: FloatArray
     parametric_frequency: float
 
     def growth_rate(self, k: int, j: int, kind: Kind, order: int, frequency: float) -> float:

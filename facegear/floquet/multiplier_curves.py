@@ -27,10 +27,8 @@ from facegear.floquet.multipliers import (
     transition_matrices,
 )
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array
 from facegear.floquet.stepping import Family
-
-ComplexArray = NDArray[np.complex128]
+from facegear.support.types import ComplexArray, FloatArray
 
 # Size of the last Chebyshev coefficients relative to the largest entry or 1.
 _TOLERANCE = 1e-11
@@ -76,7 +74,7 @@ class FrozenMotions:
         return cls(low, high, np.concatenate(found).astype(complex))
 
     @cached_property
-    def live_angle(self) -> tuple[Array, Array]:
+    def live_angle(self) -> tuple[FloatArray, FloatArray]:
         """Slowness, ascending, and angle [rad] by which the fastest motion turns that has not died within a period.
 
         The angle is summed up from the first slowness on and runs straight between.
@@ -88,7 +86,7 @@ class FrozenMotions:
         fastest = np.where(dead > middle[:, None], np.abs(self.exponents.imag), 0.0).max(axis=1)
         return slowness, np.append(0.0, np.cumsum(fastest * np.diff(slowness)))
 
-    def points(self, step: float, fewest: int) -> Array:
+    def points(self, step: float, fewest: int) -> FloatArray:
         """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range."""
         slowness, angle = self.live_angle
         density = angle / step + fewest * (slowness - self.low) / (self.high - self.low)
@@ -117,22 +115,22 @@ class _Window:
 
     low: float
     high: float
-    coefficients: Array
+    coefficients: FloatArray
 
-    def values(self, slowness: Array) -> Array:
+    def values(self, slowness: FloatArray) -> FloatArray:
         """Matrices, shape (m, d, d)."""
         return self._sum(self.coefficients, slowness)
 
-    def slopes(self, slowness: Array) -> Array:
+    def slopes(self, slowness: FloatArray) -> FloatArray:
         """Their derivatives by slowness, shape (m, d, d)."""
         return self._sum(self._slope_coefficients, slowness)
 
     @cached_property
-    def _slope_coefficients(self) -> Array:
+    def _slope_coefficients(self) -> FloatArray:
         half = (self.high - self.low) / 2.0
         return np.asarray(chebyshev.chebder(self.coefficients, axis=0) / half, dtype=float)
 
-    def _sum(self, coefficients: Array, slowness: Array) -> Array:
+    def _sum(self, coefficients: FloatArray, slowness: FloatArray) -> FloatArray:
         local = (slowness - (self.high + self.low) / 2.0) / ((self.high - self.low) / 2.0)
         angle = np.arccos(np.clip(local, -1.0, 1.0))
         basis = np.cos(angle[:, None] * np.arange(coefficients.shape[0]))
@@ -192,7 +190,7 @@ class MultiplierCurve:
         inverse = np.linalg.inv(scale)
         chosen = method_for(model, lowest_speed, highest_speed) if method is None else method
 
-        def matrices(slowness: Array) -> Array:
+        def matrices(slowness: FloatArray) -> FloatArray:
             found = np.empty((slowness.size, *scale.shape))
             for part in _neighbours(slowness):
                 systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
@@ -238,15 +236,17 @@ class MultiplierCurve:
         )
         return replace(self, windows=tuple(windows))
 
-    def transition_matrices(self, speeds: Array) -> Array:
+    def transition_matrices(self, speeds: FloatArray) -> FloatArray:
         """Scaled Φ at speeds (m,), shape (m, 2n, 2n)."""
         return self._by_window(speeds, _Window.values)
 
-    def slopes(self, speeds: Array) -> Array:
+    def slopes(self, speeds: FloatArray) -> FloatArray:
         """Differentiate the scaled Φ by 1/speed at speeds (m,), shape (m, 2n, 2n)."""
         return self._by_window(speeds, _Window.slopes)
 
-    def _by_window(self, speeds: Array, evaluate: Callable[[_Window, Array], Array]) -> Array:
+    def _by_window(
+        self, speeds: FloatArray, evaluate: Callable[[_Window, FloatArray], FloatArray]
+    ) -> FloatArray:
         slowness = 1.0 / np.asarray(speeds, dtype=float)
         self.looked_at(slowness.size)
         if len(self.windows) == 1:
@@ -259,7 +259,7 @@ class MultiplierCurve:
             found[inside] = evaluate(self.windows[number], slowness[inside])
         return found
 
-    def spectral_radii(self, speeds: Array) -> Array:
+    def spectral_radii(self, speeds: FloatArray) -> FloatArray:
         """max|λ| at speeds (m,)."""
         speeds = np.atleast_1d(speeds)
         parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
@@ -281,7 +281,7 @@ def method_for(model: Model, lowest_speed: float, highest_speed: float) -> Metho
     return AdaptiveMagnus()
 
 
-def _family_matrices(systems: list[PeriodicSystem], method: Method) -> Array:
+def _family_matrices(systems: list[PeriodicSystem], method: Method) -> FloatArray:
     first = systems[0].breakpoints
     try:
         if all(np.array_equal(system.breakpoints, first) for system in systems[1:]):
@@ -291,7 +291,7 @@ def _family_matrices(systems: list[PeriodicSystem], method: Method) -> Array:
         return np.concatenate([transition_matrices([system], AdaptiveMagnus()) for system in systems])
 
 
-def _neighbours(slowness: Array) -> list[NDArray[np.intp]]:
+def _neighbours(slowness: FloatArray) -> list[NDArray[np.intp]]:
     """Numbers of values that lie close together, group by group."""
     order = np.argsort(slowness)
     steps = np.floor(np.log(slowness[order] / slowness[order[0]]) / np.log(_TOGETHER))
@@ -299,7 +299,7 @@ def _neighbours(slowness: Array) -> list[NDArray[np.intp]]:
 
 
 def _windows(
-    evaluate: Callable[[Array], Array],
+    evaluate: Callable[[FloatArray], FloatArray],
     motions: FrozenMotions,
     low: float,
     high: float,

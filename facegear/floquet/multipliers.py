@@ -18,15 +18,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from facegear.floquet import collocation
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array
 from facegear.floquet.stepping import Family, aligned_edges, gauss_magnus, midpoint
 from facegear.support.parameters import integer_at_least, keep, within
+from facegear.support.types import ComplexArray, FloatArray
 
-ComplexArray = NDArray[np.complex128]
 # Changes of a transition matrix that show what rounding does to its eigenvalues.
 _CHANGES = 4
 
@@ -34,7 +32,7 @@ _CHANGES = 4
 class Method(Protocol):
     """A way to compute the Floquet transition matrix."""
 
-    def scaled_transition_matrices(self, family: Family) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """S Φ S⁻¹ of each system of a family, in its scaled coordinates, shape (V, 2n, 2n)."""
         ...
 
@@ -64,7 +62,7 @@ class Stepwise:
     def __post_init__(self) -> None:
         keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
-    def scaled_transition_matrices(self, family: Family) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`; refuses the velocity kicks of a contact mass with total rate."""
         if any(family.kicks):
             raise ValueError(
@@ -98,7 +96,7 @@ class AlignedStepwise:
     def __post_init__(self) -> None:
         keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
-    def scaled_transition_matrices(self, family: Family) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
         return family.product(aligned_edges(family.breakpoints, self.sub_intervals), midpoint)
 
@@ -129,7 +127,7 @@ class Magnus:
     def __post_init__(self) -> None:
         keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
-    def scaled_transition_matrices(self, family: Family) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
         return family.product(aligned_edges(family.breakpoints, self.sub_intervals), gauss_magnus)
 
@@ -164,7 +162,7 @@ class AdaptiveMagnus:
     def __post_init__(self) -> None:
         keep(self, tolerance=within("tolerance", self.tolerance, 1e-13, 1e-2))
 
-    def scaled_transition_matrices(self, family: Family) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
         start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
         factor = 1
@@ -224,7 +222,7 @@ class Collocation:
             panel_angle=within("panel_angle", self.panel_angle, 0.1, 14.0),
         )
 
-    def scaled_transition_matrices(self, family: Family) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
         matrices = collocation.transition_matrices(family.systems, self.nodes, self.panel_angle)
         return np.asarray(family.scale @ matrices @ family.inverse_scale, dtype=float)
@@ -243,7 +241,7 @@ def default_method(system: PeriodicSystem) -> Method:
     return Collocation() if collocation.is_suitable(system) else AdaptiveMagnus()
 
 
-def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> Array:
+def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> FloatArray:
     """Floquet transition matrix Φ(T0, 0) of the state (q, q̇) (2-6).
 
     Parameters
@@ -262,7 +260,7 @@ def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> A
     return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
 
 
-def _scaled_transition_matrix(family: Family, method: Method | None) -> Array:
+def _scaled_transition_matrix(family: Family, method: Method | None) -> FloatArray:
     """Φ of a single system, by :func:`default_method` if none is named, shape (2n, 2n)."""
     # Asking first whether collocation applies would set it up twice, which is most of the work.
     try:
@@ -274,7 +272,7 @@ def _scaled_transition_matrix(family: Family, method: Method | None) -> Array:
     return np.asarray(matrices[0], dtype=float)
 
 
-def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
+def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> FloatArray:
     """Transition matrices of a family of systems with common size and breakpoints, computed together.
 
     Parameters
@@ -323,7 +321,7 @@ def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
     return float(np.log(radius) / system.period)
 
 
-def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = None) -> Array:
+def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = None) -> FloatArray:
     """Largest modulus of the multipliers of each system of a family, shape (V,).
 
     As :func:`transition_matrices`, without turning back to the state (q, q̇).
@@ -359,7 +357,7 @@ def error_estimate(system: PeriodicSystem, method: Method) -> float:
     return max(map(apart, judged.finer)) + max(judged.rounding, *map(apart, judged.disturbed))
 
 
-def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> Array:
+def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> FloatArray:
     """Estimated error of each multiplier, found as :func:`error_estimate` finds that of the largest.
 
     Parameters
@@ -384,7 +382,7 @@ def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> A
     judged = _Judged.of(system, chosen)
     values = judged.values[np.argsort(-np.abs(judged.values), kind="stable")]
 
-    def apart(others: ComplexArray) -> Array:
+    def apart(others: ComplexArray) -> FloatArray:
         return np.asarray(np.abs(values[:, None] - others[None, :]).min(axis=1), dtype=float)
 
     rounding = np.maximum(judged.rounding, np.max([apart(x) for x in judged.disturbed], axis=0))
@@ -421,20 +419,20 @@ class _Judged:
         return cls(_eigenvalues(scaled), finer, list(_eigenvalues(disturbed(scaled, rounding))), rounding)
 
 
-def rounding_error(scaled: Array, family: Family, method: Method) -> float:
+def rounding_error(scaled: FloatArray, family: Family, method: Method) -> float:
     """Bound of the rounding in a scaled transition matrix (2n, 2n), as the norm of its error."""
     places = 8.0 * scaled.shape[-1] + method.rounding(family)
     return float(places * np.finfo(float).eps * max(1.0, np.linalg.norm(scaled, 2)))
 
 
-def disturbed(matrix: Array, size: float) -> Array:
+def disturbed(matrix: FloatArray, size: float) -> FloatArray:
     """Return a matrix (d, d) with changes of a given norm, always the same ones, shape (4, d, d)."""
     changes = np.random.default_rng(0).normal(size=(_CHANGES, *matrix.shape))
     norms = np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True)
     return np.asarray(matrix + size * changes / norms, dtype=float)
 
 
-def _eigenvalues(matrices: Array) -> ComplexArray:
+def _eigenvalues(matrices: FloatArray) -> ComplexArray:
     if not np.isfinite(matrices).all():
         raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
     return np.asarray(np.linalg.eigvals(matrices), dtype=complex)

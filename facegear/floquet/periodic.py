@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.piecewise import (
-    Array,
     FourierSeries,
     PiecewiseChebyshev,
     Side,
@@ -27,6 +26,7 @@ from facegear.floquet.piecewise import (
     real_array,
 )
 from facegear.support.parameters import finite_array, integer_at_least, keep, nonnegative, one_of, positive
+from facegear.support.types import FloatArray
 
 Rate = Literal["frozen", "total"]
 
@@ -95,7 +95,7 @@ class ContactLoad:
         return self.shape.derivative(2)
 
     @cached_property
-    def breakpoints(self) -> Array:
+    def breakpoints(self) -> FloatArray:
         """Instants where φ or w is not smooth, fractions of the period, ascending."""
         if self.weight is None:
             return self.shape.breakpoints
@@ -124,9 +124,9 @@ class PeriodicSystem:
         period is not positive.
     """
 
-    mass: Array
-    damping: Array
-    stiffness: Array
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
     loads: tuple[ContactLoad, ...]
     period: float
 
@@ -162,23 +162,23 @@ class PeriodicSystem:
         return int(self.mass.shape[0])
 
     @cached_property
-    def breakpoints(self) -> Array:
+    def breakpoints(self) -> FloatArray:
         """Union of the loads' breakpoints with 0, fractions of the period, ascending."""
         return merge_breakpoints([np.zeros(1), *(load.breakpoints for load in self.loads)])
 
-    def mass_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+    def mass_matrix(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Assembled M(t), shape (..., n, n)."""
         return self._assemble(fraction, side)[0]
 
-    def damping_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+    def damping_matrix(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Assembled C(t), shape (..., n, n)."""
         return self._assemble(fraction, side)[1]
 
-    def stiffness_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+    def stiffness_matrix(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Assembled K(t), shape (..., n, n); the impulses of φ̈ at slope jumps are :meth:`velocity_kicks`."""
         return self._assemble(fraction, side)[2]
 
-    def state_matrix(self, fraction: ArrayLike, side: Side = "right") -> Array:
+    def state_matrix(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """A(t) of Ẋ = A X, X = (q, q̇), Eq. (2-4), shape (..., 2n, 2n)."""
         mass, damping, stiffness = self._assemble(fraction, side)
         right = np.linalg.solve(mass, np.concatenate([stiffness, damping], axis=-1))
@@ -187,7 +187,7 @@ class PeriodicSystem:
         state[..., self.size :, :] = -right
         return state
 
-    def _assemble(self, fraction: ArrayLike, side: Side) -> tuple[Array, Array, Array]:
+    def _assemble(self, fraction: ArrayLike, side: Side) -> tuple[FloatArray, FloatArray, FloatArray]:
         x = np.asarray(fraction, dtype=float)
         mass, damping, stiffness = (
             np.broadcast_to(matrix, (*x.shape, self.size, self.size)).copy()
@@ -208,7 +208,7 @@ class PeriodicSystem:
                     stiffness += load.mass * force[..., :, None] * second[..., None, :]
         return mass, damping, stiffness
 
-    def impulses(self) -> list[tuple[float, Array]]:
+    def impulses(self) -> list[tuple[float, FloatArray]]:
         """Impulsive part of K(t): Σ m φ Δφ̇ᵀ at each slope jump of a load with mass and total rate.
 
         Returns
@@ -216,7 +216,7 @@ class PeriodicSystem:
         list of (fraction, matrix of shape (n, n))
             Ascending fractions; empty if there are none.
         """
-        found: dict[float, Array] = {}
+        found: dict[float, FloatArray] = {}
         for load in self.loads:
             if load.rate != "total" or load.mass == 0.0:
                 continue
@@ -232,7 +232,7 @@ class PeriodicSystem:
                 found[at] = found[at] + matrix if at in found else matrix
         return sorted(found.items(), key=lambda item: item[0])
 
-    def velocity_kicks(self) -> list[tuple[float, Array]]:
+    def velocity_kicks(self) -> list[tuple[float, FloatArray]]:
         """Jumps of the velocity where a contact mass with total rate meets a slope jump: q̇⁺ = q̇⁻ + P q.
 
         P = −M(t)⁻¹ Σ m φ Δφ̇ᵀ, which for M = I and one load is −φ m/(1 + m φᵀφ) Δφ̇ᵀ.
@@ -242,9 +242,9 @@ class PeriodicSystem:
         list of (fraction, P of shape (n, n))
             Ascending fractions; empty if there are none.
         """
-        kicks: list[tuple[float, Array]] = []
+        kicks: list[tuple[float, FloatArray]] = []
         for at, matrix in self.impulses():
-            kick: Array = np.asarray(-np.linalg.solve(self.mass_matrix(at), matrix), dtype=float)
+            kick: FloatArray = np.asarray(-np.linalg.solve(self.mass_matrix(at), matrix), dtype=float)
             kicks.append((at, kick))
         return kicks
 
@@ -326,7 +326,7 @@ class PeriodicSystem:
         return replace(self, loads=loads)
 
 
-def rigid_motions(system: PeriodicSystem) -> Array:
+def rigid_motions(system: PeriodicSystem) -> FloatArray:
     """Rigid-body motions of a system: displacements r that meet neither spring nor damper nor load.
 
     Parameters
@@ -389,7 +389,7 @@ def without_rigid_motion(system: PeriodicSystem) -> PeriodicSystem:
     return replace(system, mass=np.eye(basis.shape[1]), damping=damping, stiffness=stiffness, loads=loads)
 
 
-def _rigid_projection(system: PeriodicSystem) -> tuple[Array, Array]:
+def _rigid_projection(system: PeriodicSystem) -> tuple[FloatArray, FloatArray]:
     """Projection on the rigid-body motions in coordinates Lᵀq, M = L Lᵀ, and L⁻ᵀ, which leads back to q."""
     root = np.linalg.inv(np.linalg.cholesky(system.mass)).T
     rows = [root.T @ system.stiffness @ root, root.T @ system.damping @ root]
@@ -408,7 +408,7 @@ def _acts(load: ContactLoad) -> bool:
     return load.stiffness > 0.0 or load.damping > 0.0 or load.mass > 0.0
 
 
-def _columns(projection: Array, count: int) -> Array:
+def _columns(projection: FloatArray, count: int) -> FloatArray:
     """Orthonormal columns that span what a projection leaves, shape (n, count).
 
     They are taken from its own columns, the longest first, so that they change as smoothly as it does.
@@ -432,9 +432,9 @@ class LoadColumn:
     mass, damping, stiffness : array, shape (V, p)
     """
 
-    mass: Array
-    damping: Array
-    stiffness: Array
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
 
     def __post_init__(self) -> None:
         for name in ("mass", "damping", "stiffness"):
@@ -458,7 +458,7 @@ class LoadColumn:
     def __len__(self) -> int:
         return int(self.mass.shape[0])
 
-    def stacked(self) -> Array:
+    def stacked(self) -> FloatArray:
         """All parameters, shape (V, 3 p)."""
         return np.concatenate([self.mass, self.damping, self.stiffness], axis=1)
 
@@ -469,7 +469,7 @@ class LoadColumn:
         return LoadColumn(self.mass[rows], self.damping[rows], self.stiffness[rows])
 
     @classmethod
-    def from_stacked(cls, values: Array) -> LoadColumn:
+    def from_stacked(cls, values: FloatArray) -> LoadColumn:
         """Undo :meth:`stacked`; rounding below zero is taken off."""
         mass, damping, stiffness = np.split(np.maximum(values, 0.0), 3, axis=1)
         return cls(mass, damping, stiffness)
@@ -485,7 +485,7 @@ def _dyad_series(
         shape.breakpoints if weight is None else merge_breakpoints([shape.breakpoints, weight.breakpoints])
     )
 
-    def dyads(fraction: Array) -> Array:
+    def dyads(fraction: FloatArray) -> FloatArray:
         force = shape(fraction) if weight is None else shape(fraction) * weight(fraction)
         return np.asarray(force[:, :, None] * other(fraction)[:, None, :])
 

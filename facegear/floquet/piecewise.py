@@ -17,20 +17,20 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
 from facegear.support.parameters import finite, finite_array, integer_at_least, keep
+from facegear.support.types import FloatArray
 
-Array = NDArray[np.float64]
 Side = Literal["left", "right"]
 
 #: Two breakpoints closer than this fraction of the period are one.
 SAME_INSTANT = 1e-12
 
 
-def chebyshev_points(count: int) -> Array:
+def chebyshev_points(count: int) -> FloatArray:
     """Chebyshev points of the first kind on [-1, 1], ascending, shape (count,)."""
     return -np.cos(np.pi * (np.arange(count) + 0.5) / count)
 
 
-def chebyshev_coefficients(values: Array) -> Array:
+def chebyshev_coefficients(values: FloatArray) -> FloatArray:
     """Chebyshev coefficients of the interpolant through `values` at :func:`chebyshev_points`.
 
     Parameters
@@ -51,12 +51,12 @@ def chebyshev_coefficients(values: Array) -> Array:
     return np.tensordot(transform, values, axes=(1, 0))
 
 
-def _chebyshev_basis(x: Array, degree: int) -> Array:
+def _chebyshev_basis(x: FloatArray, degree: int) -> FloatArray:
     """T_0 ... T_degree at x in [-1, 1], shape (len(x), degree + 1)."""
     return np.cos(np.arange(degree + 1) * np.arccos(np.clip(x, -1.0, 1.0))[:, None])
 
 
-def wrap(fraction: Array) -> Array:
+def wrap(fraction: FloatArray) -> FloatArray:
     """Fraction of the period in [0, 1); values within rounding of 1 become 0."""
     wrapped = np.mod(fraction, 1.0)
     return np.where(wrapped > 1.0 - SAME_INSTANT, 0.0, wrapped)
@@ -82,8 +82,8 @@ class PiecewiseChebyshev:
         If breakpoints are not ascending inside [0, 1), or the shapes do not match, or an entry is not finite.
     """
 
-    breakpoints: Array
-    coefficients: Array
+    breakpoints: FloatArray
+    coefficients: FloatArray
 
     def __post_init__(self) -> None:
         breakpoints = real_array(self.breakpoints, "breakpoints", 1)
@@ -99,7 +99,7 @@ class PiecewiseChebyshev:
     @classmethod
     def fit(
         cls,
-        function: Callable[[Array, int], ArrayLike],
+        function: Callable[[FloatArray, int], ArrayLike],
         breakpoints: ArrayLike,
         *,
         tolerance: ArrayLike = 1e-13,
@@ -129,7 +129,7 @@ class PiecewiseChebyshev:
         _check_breakpoints(edges)
         ends = np.append(edges[1:], edges[0] + 1.0)
 
-        def sample(piece: int, count: int) -> Array:
+        def sample(piece: int, count: int) -> FloatArray:
             middle, half = (ends[piece] + edges[piece]) / 2.0, (ends[piece] - edges[piece]) / 2.0
             values = np.asarray(function(middle + half * chebyshev_points(count), piece), dtype=float)
             values = values[:, None] if values.ndim == 1 else values
@@ -184,7 +184,7 @@ class PiecewiseChebyshev:
         return int(self.coefficients.shape[1]) - 1
 
     @cached_property
-    def lengths(self) -> Array:
+    def lengths(self) -> FloatArray:
         """Lengths of the pieces as fractions of the period, shape (pieces,)."""
         return np.diff(np.append(self.breakpoints, self.breakpoints[0] + 1.0))
 
@@ -193,7 +193,7 @@ class PiecewiseChebyshev:
         """A bound on the largest absolute value of any component."""
         return float(np.abs(self.coefficients).sum(axis=1).max())
 
-    def __call__(self, fraction: ArrayLike, side: Side = "right") -> Array:
+    def __call__(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Value at fractions of the period.
 
         Parameters
@@ -244,11 +244,11 @@ class PiecewiseChebyshev:
         order = np.argsort(moved)
         return PiecewiseChebyshev(moved[order], self.coefficients[order])
 
-    def jumps(self) -> Array:
+    def jumps(self) -> FloatArray:
         """Right minus left limit at each breakpoint, shape (pieces, components)."""
         signs = (-1.0) ** np.arange(self.degree + 1)
-        right: Array = np.einsum("d,pdn->pn", signs, self.coefficients)
-        left: Array = np.roll(self.coefficients.sum(axis=1), 1, axis=0)
+        right: FloatArray = np.einsum("d,pdn->pn", signs, self.coefficients)
+        left: FloatArray = np.roll(self.coefficients.sum(axis=1), 1, axis=0)
         return right - left
 
 
@@ -262,11 +262,11 @@ class FourierSeries:
     cosine, sine : array, shape (order, rows, columns)
     """
 
-    mean: Array
-    cosine: Array
-    sine: Array
+    mean: FloatArray
+    cosine: FloatArray
+    sine: FloatArray
 
-    def __call__(self, fraction: ArrayLike) -> Array:
+    def __call__(self, fraction: ArrayLike) -> FloatArray:
         """Value of the truncated series, shape (..., rows, columns)."""
         angle = (
             2.0
@@ -289,14 +289,18 @@ class FourierSeries:
 
 
 @lru_cache(maxsize=64)
-def _gauss_legendre(nodes: int) -> tuple[Array, Array]:
+def _gauss_legendre(nodes: int) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights on [-1, 1]."""
     x, weights = np.polynomial.legendre.leggauss(nodes)
     return x, weights
 
 
 def fourier_series(
-    function: Callable[[Array], Array], breakpoints: ArrayLike, order: int, *, tolerance: float = 1e-13
+    function: Callable[[FloatArray], FloatArray],
+    breakpoints: ArrayLike,
+    order: int,
+    *,
+    tolerance: float = 1e-13,
 ) -> FourierSeries:
     """Fourier coefficients (2-14) of a periodic matrix function that is smooth between breakpoints.
 
@@ -350,20 +354,20 @@ def fourier_series(
     return FourierSeries(mean=fine[0].real.copy(), cosine=2.0 * fine[1:].real, sine=2.0 * fine[1:].imag)
 
 
-def merge_breakpoints(parts: Sequence[Array]) -> Array:
+def merge_breakpoints(parts: Sequence[FloatArray]) -> FloatArray:
     """Union of sets of breakpoints in [0, 1), ascending; those within rounding of one another are one."""
     points = np.sort(np.concatenate([wrap(np.asarray(part, dtype=float)) for part in parts]))
     return points[np.diff(points, prepend=-1.0) > SAME_INSTANT]
 
 
-def _check_breakpoints(breakpoints: Array) -> None:
+def _check_breakpoints(breakpoints: FloatArray) -> None:
     if breakpoints.size == 0 or breakpoints[0] < 0.0 or breakpoints[-1] >= 1.0:
         raise ValueError(f"breakpoints must lie inside [0, 1), at least one; got {breakpoints.tolist()}")
     if (np.diff(breakpoints) <= SAME_INSTANT).any():
         raise ValueError(f"breakpoints must ascend and differ; got {breakpoints.tolist()}")
 
 
-def real_array(values: ArrayLike, name: str, dimensions: int) -> Array:
+def real_array(values: ArrayLike, name: str, dimensions: int) -> FloatArray:
     """Return a read-only float copy, checked for its number of dimensions and for finite entries."""
     array = finite_array(name, values)
     if array.ndim != dimensions:

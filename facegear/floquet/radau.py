@@ -20,9 +20,10 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from facegear.floquet.piecewise import SAME_INSTANT, Array
+from facegear.floquet.piecewise import SAME_INSTANT
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import integer_within, keep, within
+from facegear.support.types import FloatArray
 
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB.
 _STACK_ENTRIES = 1_000_000
@@ -37,13 +38,13 @@ _LEADING, _LAST = 3, 2
 class _Rule(NamedTuple):
     """Radau IIA rule of m stages on [0, 1]."""
 
-    nodes: Array
+    nodes: FloatArray
     """c, shape (m,), ascending, the last one 1."""
-    once: Array
+    once: FloatArray
     """A, ∫ from 0 to c_i, shape (m, m); its last row is the weights."""
-    twice: Array
+    twice: FloatArray
     """A², the integral taken twice."""
-    to_legendre: Array
+    to_legendre: FloatArray
     """From values at the nodes to Legendre coefficients, shape (m, m)."""
 
 
@@ -95,7 +96,7 @@ class Radau:
             tolerance=within("tolerance", self.tolerance, 1e-15, 1e-2),
         )
 
-    def scaled_transition_matrices(self, family: Family) -> Array:
+    def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`facegear.floquet.multipliers.Method`."""
         if any(family.kicks):
             raise ValueError(
@@ -131,7 +132,7 @@ class Radau:
         return _PANEL_ANGLE * (_graded_edges(family, _PANEL_ANGLE, -np.log(self.tolerance)).size - 1)
 
 
-def _graded_edges(family: Family, panel_angle: float, dead: float) -> Array:
+def _graded_edges(family: Family, panel_angle: float, dead: float) -> FloatArray:
     """Place the first ends of panels: short after each breakpoint, longer where fast motions have died.
 
     Each panel spans `panel_angle` [rad] of the fastest motion, frozen in the middle of the piece, that has not
@@ -167,13 +168,13 @@ class _Panels:
         states at its start.
     """
 
-    start: Array
-    length: Array
-    steps: Array
-    coefficients: Array
+    start: FloatArray
+    length: FloatArray
+    steps: FloatArray
+    coefficients: FloatArray
 
     @classmethod
-    def between(cls, family: Family, rule: _Rule, start: Array, length: Array) -> _Panels:
+    def between(cls, family: Family, rule: _Rule, start: FloatArray, length: FloatArray) -> _Panels:
         chunk = max(1, _STACK_ENTRIES // (len(family.systems) * (rule.nodes.size * family.size) ** 2))
         parts = [
             _solved(family, rule, start[i : i + chunk], length[i : i + chunk])
@@ -190,14 +191,14 @@ class _Panels:
         start = np.concatenate([self.start[~chosen], new.start])
         order = np.argsort(start)
 
-        def merged(name: str) -> Array:
+        def merged(name: str) -> FloatArray:
             both = np.concatenate([getattr(self, name)[:, ~chosen], getattr(new, name)], axis=1)
             return np.asarray(both[:, order])
 
         length = np.concatenate([self.length[~chosen], new.length])
         return _Panels(start[order], length[order], merged("steps"), merged("coefficients"))
 
-    def product(self) -> tuple[Array, Array]:
+    def product(self) -> tuple[FloatArray, FloatArray]:
         """Transition matrices, shape (V, 2n, 2n), and the error each panel brings in, shape (P,)."""
         total = np.broadcast_to(np.eye(self.steps.shape[-1]), (len(self.steps), *self.steps.shape[-2:]))
         arriving = np.empty_like(self.steps)
@@ -216,7 +217,9 @@ class _Panels:
         return total, np.asarray((error / largest[:, np.newaxis]).max(axis=0), dtype=float)
 
 
-def _solved(family: Family, rule: _Rule, start: Array, length: Array) -> tuple[Array, Array]:
+def _solved(
+    family: Family, rule: _Rule, start: FloatArray, length: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Solve some panels for their steps and coefficients."""
     n, m, count = family.size, rule.nodes.size, start.size
     points = start[:, np.newaxis] + length[:, np.newaxis] * rule.nodes

@@ -9,16 +9,17 @@ import numpy as np
 
 from facegear.floquet.collocation import chain
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
-from facegear.floquet.piecewise import Array, PiecewiseChebyshev
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.support.types import FloatArray
 
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB, and small stacks in cache.
 _STACK_ENTRIES = 500_000
 
-StateMatrices = Callable[[Array], Array]
-Exponents = Callable[[Array, Array, StateMatrices], Array]
+StateMatrices = Callable[[FloatArray], FloatArray]
+Exponents = Callable[[FloatArray, FloatArray, StateMatrices], FloatArray]
 
 
-def aligned_edges(breakpoints: Array, sub_intervals: int, factor: int = 1) -> Array:
+def aligned_edges(breakpoints: FloatArray, sub_intervals: int, factor: int = 1) -> FloatArray:
     """Return ends of sub-intervals, ascending from 0 to 1, every breakpoint (0 among them) included.
 
     Each piece gets its share of `sub_intervals`, rounded up, each of these cut in `factor`.
@@ -31,12 +32,12 @@ def aligned_edges(breakpoints: Array, sub_intervals: int, factor: int = 1) -> Ar
     return np.append(np.concatenate(parts), 1.0)
 
 
-def midpoint(start: Array, length: Array, state: StateMatrices) -> Array:
+def midpoint(start: FloatArray, length: FloatArray, state: StateMatrices) -> FloatArray:
     """Exponent h A(midpoint) of each sub-interval (2-9)."""
     return np.asarray(state(start + length / 2.0) * length[:, None, None], dtype=float)
 
 
-def gauss_magnus(start: Array, length: Array, state: StateMatrices) -> Array:
+def gauss_magnus(start: FloatArray, length: FloatArray, state: StateMatrices) -> FloatArray:
     """Fourth-order Magnus exponent h (A₁+A₂)/2 − √3/12 h² [A₁, A₂] of each sub-interval, two Gauss nodes."""
     offset = np.sqrt(3.0) / 6.0
     first = state(start + (0.5 - offset) * length) * length[:, None, None]
@@ -45,7 +46,7 @@ def gauss_magnus(start: Array, length: Array, state: StateMatrices) -> Array:
     return np.asarray((first + second) / 2.0 - (np.sqrt(3.0) / 12.0) * commutator, dtype=float)
 
 
-def exponentials(matrices: Array) -> Array:
+def exponentials(matrices: FloatArray) -> FloatArray:
     """Matrix exponentials of a stack of small matrices, shape (..., d, d).
 
     Taylor polynomial of degree 12 in five products (Paterson and Stockmeyer), scaling and squaring. For the tens of
@@ -62,7 +63,7 @@ def exponentials(matrices: Array) -> Array:
     identity = np.eye(matrices.shape[-1])
     inverse_factorial = 1.0 / np.cumprod(np.concatenate([[1.0], np.arange(1.0, 13.0)]))
 
-    def cubic(order: int) -> Array:
+    def cubic(order: int) -> FloatArray:
         c = inverse_factorial[order : order + 4]
         return np.asarray(c[0] * identity + c[1] * first + c[2] * second + c[3] * third, dtype=float)
 
@@ -122,7 +123,7 @@ class Family:
         self.inverse_scale = np.linalg.inv(self.scale)
 
     @cached_property
-    def frequencies(self) -> Array:
+    def frequencies(self) -> FloatArray:
         """Fastest undamped motion of each system frozen in the middle of its smooth pieces [rad/s], shape (V,)."""
         middle = self.breakpoints + np.diff(np.append(self.breakpoints, 1.0)) / 2.0
         mass, _, stiffness = self.assembled(middle)
@@ -142,7 +143,7 @@ class Family:
         norms = np.linalg.norm(self.state_matrices(self.breakpoints + lengths / 2.0), 2, axis=(-2, -1))
         return float((norms @ lengths).max())
 
-    def assembled(self, fraction: Array) -> tuple[Array, Array, Array]:
+    def assembled(self, fraction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """M(t), C(t), K(t) at fractions (m,), each of shape (V, m, n, n) or with an axis of length 1."""
         mass, damping, stiffness = self.mass, self.damping, self.stiffness
         period = self.periods[:, None, None, None]
@@ -173,7 +174,7 @@ class Family:
                 stiffness = stiffness + (through * m / period**2) * second
         return mass, damping, stiffness
 
-    def state_matrices(self, fraction: Array) -> Array:
+    def state_matrices(self, fraction: FloatArray) -> FloatArray:
         """T0 S A S⁻¹ at fractions (m,), shape (V, m, 2n, 2n)."""
         n = self.size
         mass, damping, stiffness = self.assembled(fraction)
@@ -187,7 +188,7 @@ class Family:
         state[..., n:, n:] = left @ damping @ back
         return state
 
-    def product(self, edges: Array, exponents: Exponents) -> Array:
+    def product(self, edges: FloatArray, exponents: Exponents) -> FloatArray:
         """Product of the exponentials over the sub-intervals between `edges`, kicks put in, (V, 2n, 2n)."""
         size = 2 * self.size
         chunk = max(1, _STACK_ENTRIES // (len(self.systems) * size**2))
@@ -202,7 +203,7 @@ class Family:
                 total = chain(steps) @ total
         return np.asarray(total)
 
-    def _put_in_kicks(self, steps: Array, start: Array) -> None:
+    def _put_in_kicks(self, steps: FloatArray, start: FloatArray) -> None:
         """Precede the sub-interval that starts at a kick's instant by the jump of the state."""
         n = self.size
         for number, kicks in enumerate(self.kicks):
@@ -214,7 +215,7 @@ class Family:
                     steps[number, place] = steps[number, place] @ jump
 
 
-def _scaling(mass: Array, frequency: float) -> Array:
+def _scaling(mass: FloatArray, frequency: float) -> FloatArray:
     """S of the state S X = (ω Lᵀq, Lᵀq̇), M = L Lᵀ: both halves have the size of a root energy, as q and q̇ do not."""
     factor = np.linalg.cholesky(mass).T
     zero = np.zeros_like(factor)
@@ -222,8 +223,10 @@ def _scaling(mass: Array, frequency: float) -> Array:
 
 
 def _values(
-    loads: Sequence[ContactLoad], part: Callable[[ContactLoad], PiecewiseChebyshev | None], fraction: Array
-) -> Array:
+    loads: Sequence[ContactLoad],
+    part: Callable[[ContactLoad], PiecewiseChebyshev | None],
+    fraction: FloatArray,
+) -> FloatArray:
     """Values of one periodic function of each load, evaluated once if they share it: (V or 1, m, components)."""
     functions = [part(load) for load in loads]
     if all(function is functions[0] for function in functions):

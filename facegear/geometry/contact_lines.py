@@ -27,7 +27,7 @@ from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 
 from facegear.geometry.recut import Shaper
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 from facegear.symbolic import meshing
 
 # No flank reaches a local pressure angle near 90°: u_s would be infinite there.

@@ -22,7 +22,7 @@ from facegear.geometry.flanks import (
     top_thickness,
 )
 from facegear.support import parameters
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 from facegear.symbolic import meshing
 
 ADDENDUM = 1.0  # pinion and face gear, in modules

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from facegear.geometry.contact_lines import ContactRegion
 from facegear.support import parameters
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 from facegear.symbolic import meshing
 
 

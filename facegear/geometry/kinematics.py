@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.geometry.drive import ADDENDUM, Drive
 from facegear.support import parameters
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 
 # Breakpoints closer than this, in mesh periods, are the same instant but for rounding.
 _SAME_INSTANT = 1e-12

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.geometry.drive import Drive
 from facegear.support import parameters
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 
 # Total angles within this fraction of a pitch of a whole number of teeth count as whole.
 _WHOLE_PITCH = 1e-9

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import root as solve
 
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 from facegear.symbolic import meshing
 
 # Rotations since generation between which roots are looked for. None of them is 0, where every point touches.

@@ -18,8 +18,8 @@ from facegear.floquet.labels import Combination, combination
 from facegear.floquet.models import Model, parameter_path, replace_parameter
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.multipliers import Method
-from facegear.floquet.piecewise import Array
 from facegear.support.parameters import finite_array, positive
+from facegear.support.types import FloatArray
 
 # Speeds at which the growth is looked at before its largest values are refined.
 _SPEEDS = 513
@@ -74,9 +74,9 @@ class GrowthPeaks:
         Every value between the first and the last at which it passes through zero, ascending.
     """
 
-    values: Array
-    speeds: Array
-    growth_rates: Array
+    values: FloatArray
+    speeds: FloatArray
+    growth_rates: FloatArray
     closing_values: tuple[ClosingValue, ...]
 
 
@@ -110,7 +110,7 @@ def largest_growth(
     # The growth in a period over the period, which is in inverse proportion to speed.
     per_second = 1.0 / (model.system(low).period * low)
 
-    def growth(speeds: Array) -> Array:
+    def growth(speeds: FloatArray) -> FloatArray:
         return np.asarray(np.log(curve.spectral_radii(speeds)) * speeds * per_second, dtype=float)
 
     grid = np.linspace(low, high, _SPEEDS)
@@ -206,7 +206,7 @@ def _range(lowest_speed: float, highest_speed: float) -> tuple[float, float]:
     return low, high
 
 
-def _zeros(function: Callable[[float], float], axis: Array, values: Array) -> list[float]:
+def _zeros(function: Callable[[float], float], axis: FloatArray, values: FloatArray) -> list[float]:
     """All zeros between samples, those of extremes that cross zero between two samples among them."""
     points = dict(zip(axis.tolist(), values.tolist(), strict=True))
     for i in range(1, axis.size - 1):

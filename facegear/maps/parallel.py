@@ -19,8 +19,8 @@ from typing import Any, Literal, Protocol, TypeVar
 import numpy as np
 
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array
 from facegear.support.provenance import code_digest
+from facegear.support.types import FloatArray
 
 Workers = Literal["processes", "threads"]
 T = TypeVar("T")
@@ -33,7 +33,7 @@ class Task(Protocol):
         """Everything the result depends on: arrays, numbers and text."""
         ...
 
-    def compute(self) -> Array:
+    def compute(self) -> FloatArray:
         """Return the result."""
         ...
 
@@ -45,7 +45,7 @@ def computed(
     progress: bool | None,
     cache_directory: str | os.PathLike[str] | None,
     prefer: Workers = "processes",
-) -> Iterator[tuple[int, Array]]:
+) -> Iterator[tuple[int, FloatArray]]:
     """Results of all tasks with their numbers, in the order in which they are there.
 
     Parameters
@@ -135,7 +135,7 @@ def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
 
 def _in_parallel(
     tasks: Sequence[tuple[int, Task]], jobs: int, prefer: Workers
-) -> Iterator[tuple[int, Array]]:
+) -> Iterator[tuple[int, FloatArray]]:
     """Run tasks where joblib says; a single one is not worth another process."""
     from joblib import Parallel, delayed, effective_n_jobs
     from joblib.parallel import get_active_backend
@@ -159,7 +159,7 @@ def _in_parallel(
             )
 
 
-def _run(number: int, task: Task) -> tuple[int, Array]:
+def _run(number: int, task: Task) -> tuple[int, FloatArray]:
     return number, _on_one_thread(task.compute)
 
 
@@ -185,7 +185,7 @@ class _Store:
                     digest.update(f"|{part!r}".encode())
         return digest.hexdigest()
 
-    def load(self, task: Task) -> Array | None:
+    def load(self, task: Task) -> FloatArray | None:
         """Return a result that is there, undamaged and this task's, else None."""
         key = self._key(task)
         try:
@@ -199,7 +199,7 @@ class _Store:
             return None
         return np.asarray(result, dtype=float)
 
-    def save(self, task: Task, result: Array) -> None:
+    def save(self, task: Task, result: FloatArray) -> None:
         """Write under another name first: a file with the right name is complete."""
         key = self._key(task)
         handle, temporary = tempfile.mkstemp(dir=self.directory, suffix=".part")
@@ -212,7 +212,7 @@ class _Store:
             raise
 
 
-def _digest(key: str, result: Array) -> str:
+def _digest(key: str, result: FloatArray) -> str:
     """Bind a result to the task that it belongs to."""
     whole = f"{key} {result.shape}".encode() + np.ascontiguousarray(result).tobytes()
     return hashlib.sha256(whole).hexdigest()

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from facegear.floquet.multiplier_curves import ComplexArray, MultiplierCurve
-from facegear.floquet.piecewise import Array
+from facegear.floquet.multiplier_curves import MultiplierCurve
+from facegear.support.types import ComplexArray, FloatArray
 
 # Largest angle [rad] by which the fastest live motion turns from one sample to the next.
 SAMPLE_ANGLE = 0.2
@@ -42,10 +42,10 @@ SPEED_TOLERANCE = 1e-9
 class Scan:
     """Speeds looked at, ascending, and the spectral radius at each."""
 
-    speeds: Array
-    radii: Array
+    speeds: FloatArray
+    radii: FloatArray
 
-    def with_speeds(self, curve: MultiplierCurve, speeds: Sequence[float] | Array) -> Scan:
+    def with_speeds(self, curve: MultiplierCurve, speeds: Sequence[float] | FloatArray) -> Scan:
         """Return the scan with more speeds; those already there are left out."""
         added = np.unique(np.asarray(speeds, dtype=float))
         added = np.setdiff1d(added[(added > curve.lowest_speed) & (added < curve.highest_speed)], self.speeds)
@@ -73,7 +73,7 @@ def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) ->
     return scan.with_speeds(curve, _gaps(curve, scan, threshold))
 
 
-def _steps(grid: Array, points: Array) -> Array:
+def _steps(grid: FloatArray, points: FloatArray) -> FloatArray:
     """Distance of the points of a grid next to each point, the larger of both sides."""
     steps = np.diff(grid)
     right = np.searchsorted(grid, points, side="right").clip(1, steps.size) - 1
@@ -81,7 +81,9 @@ def _steps(grid: Array, points: Array) -> Array:
     return np.asarray(np.maximum(steps[left], steps[right]))
 
 
-def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: float) -> tuple[Array, Scan]:
+def _meetings(
+    curve: MultiplierCurve, seeds: FloatArray, steps: FloatArray, threshold: float
+) -> tuple[FloatArray, Scan]:
     """Slowness 1/speed where phases of two multipliers meet whose growth there could pass the threshold.
 
     Returns them and all samples that were looked at for it.
@@ -109,7 +111,7 @@ def _meetings(curve: MultiplierCurve, seeds: Array, steps: Array, threshold: flo
     return np.concatenate(found), Scan(np.concatenate(speeds), np.concatenate(radii))
 
 
-def _distinct(points: Array, tolerance: Array) -> Array:
+def _distinct(points: FloatArray, tolerance: FloatArray) -> FloatArray:
     """Numbers of points, the ones foretold from nearby first, that differ by more than their tolerance."""
     order = np.argsort(points)
     kept: list[int] = []
@@ -123,8 +125,8 @@ def _distinct(points: Array, tolerance: Array) -> Array:
 
 
 def _foretold(
-    curve: MultiplierCurve, centres: Array, reach: Array, threshold: float
-) -> tuple[Array, Array, Scan]:
+    curve: MultiplierCurve, centres: FloatArray, reach: FloatArray, threshold: float
+) -> tuple[FloatArray, FloatArray, Scan]:
     """Meetings of multipliers within `reach` of samples, their distances from them, both in slowness, and the samples.
 
     In the eigenvectors of a sample ln(Φ + δ Φ') is diag(p) + δ G to first order. The block of a pair has the
@@ -206,7 +208,7 @@ class _Critical(NamedTuple):
         return bool(np.abs((self.left @ other.right) * (other.left @ self.right)) > 0.5)
 
 
-def _critical(curve: MultiplierCurve, speeds: Array, threshold: float) -> list[_Critical]:
+def _critical(curve: MultiplierCurve, speeds: FloatArray, threshold: float) -> list[_Critical]:
     """Critical motions at speeds (m,)."""
     found = []
     for part in np.array_split(speeds, speeds.size // curve.batch + 1):

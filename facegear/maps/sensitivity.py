@@ -19,17 +19,15 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.floquet.multipliers import AdaptiveMagnus, Method
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
-from facegear.floquet.piecewise import Array, chebyshev_coefficients, chebyshev_points
+from facegear.floquet.piecewise import chebyshev_coefficients, chebyshev_points
 from facegear.floquet.stepping import Family
 from facegear.maps.tracing import Tongue
 from facegear.support.parameters import integer_at_least, positive
-
-ComplexArray = NDArray[np.complex128]
+from facegear.support.types import ComplexArray, FloatArray
 
 SPEED = "speed"
 """Name under which the speed [rad/s] stands among the parameters."""
@@ -62,12 +60,12 @@ class SystemDerivative:
         dT0.
     """
 
-    mass: Array
-    damping: Array
-    stiffness: Array
-    load_mass: Array
-    load_damping: Array
-    load_stiffness: Array
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+    load_mass: FloatArray
+    load_damping: FloatArray
+    load_stiffness: FloatArray
     period: float
 
 
@@ -106,7 +104,7 @@ def system_derivative(model: Model, speed: float, parameter: str) -> SystemDeriv
     for system in systems:
         _same_shapes(present, system, parameter)
 
-    def derivative(name: str, parts: Sequence[Any]) -> Array:
+    def derivative(name: str, parts: Sequence[Any]) -> FloatArray:
         values = np.array(parts, dtype=float)
         series = chebyshev_coefficients(values)
         size = np.abs(series).max()
@@ -118,7 +116,7 @@ def system_derivative(model: Model, speed: float, parameter: str) -> SystemDeriv
         series[1:, (values == values[0]).all(axis=0)] = 0.0
         return np.asarray(chebyshev.chebval(0.0, chebyshev.chebder(series, axis=0)) / half, dtype=float)
 
-    def of_loads(name: str) -> Array:
+    def of_loads(name: str) -> FloatArray:
         return derivative(
             f"{name} of the loads", [[getattr(x, name) for x in s.loads] for s in systems]
         ).reshape(-1)
@@ -176,7 +174,7 @@ class _VariedFamily(Family):
     """
 
     def __init__(
-        self, system: PeriodicSystem, derivatives: Sequence[SystemDerivative], values: Array
+        self, system: PeriodicSystem, derivatives: Sequence[SystemDerivative], values: FloatArray
     ) -> None:
         super().__init__([system])
         if any(self.kicks):
@@ -191,7 +189,7 @@ class _VariedFamily(Family):
         self.systems = [system] * len(derivatives)
         self.size = 2 * self._single.size
 
-    def state_matrices(self, fraction: Array) -> Array:
+    def state_matrices(self, fraction: FloatArray) -> FloatArray:
         """Return [[B, 0], [dB/d ln p, B]] in scaled coordinates, shape (P, m, 4n, 4n)."""
         single = self._single
         n = single.size
@@ -206,7 +204,7 @@ class _VariedFamily(Family):
             )
         return blocks
 
-    def _changes(self, fraction: Array) -> Array:
+    def _changes(self, fraction: FloatArray) -> FloatArray:
         """d(T0 A)/dp of each parameter at fractions (m,), shape (P, m, 2n, 2n)."""
         system = self._single.systems[0]
         n, period = system.size, system.period
@@ -238,7 +236,7 @@ class _VariedFamily(Family):
         return result
 
 
-def _dyads(load: ContactLoad, fraction: Array) -> tuple[Array, Array, Array]:
+def _dyads(load: ContactLoad, fraction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return w φφᵀ, w φφ'ᵀ and w φφ''ᵀ of a load at fractions (m,), each of shape (m, n, n)."""
     phi = load.shape(fraction)
     force = (phi if load.weight is None else phi * load.weight(fraction))[..., :, None]
@@ -249,7 +247,7 @@ def _dyads(load: ContactLoad, fraction: Array) -> tuple[Array, Array, Array]:
 
 def transition_derivatives(
     model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
-) -> tuple[Array, Array]:
+) -> tuple[FloatArray, FloatArray]:
     """Floquet transition matrix and its derivatives by parameters.
 
     Parameters
@@ -281,13 +279,13 @@ def transition_derivatives(
     return back @ matrix @ scale, back @ (scaled / values[:, None, None]) @ scale
 
 
-def _varied(model: Model, speed: float, parameters: Sequence[str]) -> tuple[_VariedFamily, Array]:
+def _varied(model: Model, speed: float, parameters: Sequence[str]) -> tuple[_VariedFamily, FloatArray]:
     values = np.array([parameter_value(model, speed, name) for name in parameters])
     derivatives = [system_derivative(model, speed, name) for name in parameters]
     return _VariedFamily(model.system(speed), derivatives, values), values
 
 
-def _split(family: _VariedFamily, method: Method | None) -> tuple[Array, Array]:
+def _split(family: _VariedFamily, method: Method | None) -> tuple[FloatArray, FloatArray]:
     """Φ and dΦ/d ln p, both in scaled coordinates."""
     chosen = AdaptiveMagnus() if method is None else method
     both = chosen.scaled_transition_matrices(family)
@@ -315,14 +313,14 @@ class Sensitivity:
     """
 
     parameters: tuple[str, ...]
-    values: Array
+    values: FloatArray
     multiplier: complex
     multiplier_derivatives: ComplexArray
     growth_rate: float
-    growth_rate_derivatives: Array
+    growth_rate_derivatives: FloatArray
 
     @property
-    def logarithmic_derivatives(self) -> Array:
+    def logarithmic_derivatives(self) -> FloatArray:
         """Derivatives of ln|λ|, shape (P,): what counts at a border, where the period plays no part."""
         return np.asarray((self.multiplier_derivatives / self.multiplier).real, dtype=float)
 
@@ -361,7 +359,7 @@ def sensitivity(
     return Sensitivity(tuple(parameters), values, critical, d_multiplier, growth, d_growth)
 
 
-def _critical(matrix: Array, speed: float) -> tuple[complex, ComplexArray, ComplexArray]:
+def _critical(matrix: FloatArray, speed: float) -> tuple[complex, ComplexArray, ComplexArray]:
     """Multiplier of largest modulus, its left eigenvector (a row) and its right one, their product 1."""
     values, vectors = np.linalg.eig(matrix)
     order = np.argsort(-np.abs(values) - 1e-12 * (values.imag > 0.0), kind="stable")
@@ -383,7 +381,7 @@ def _critical(matrix: Array, speed: float) -> tuple[complex, ComplexArray, Compl
 
 def border_derivatives(
     model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
-) -> Array:
+) -> FloatArray:
     """Differentiate the speed of a border by parameters, dΩ/dp = −(∂|λ|/∂p)/(∂|λ|/∂Ω).
 
     Parameters
@@ -418,7 +416,7 @@ def border_derivatives(
 
 def width_derivatives(
     model: Model, tongue: Tongue, parameters: Sequence[str], method: Method | None = None
-) -> Array:
+) -> FloatArray:
     """Differentiate the width of a tongue by parameters.
 
     Parameters

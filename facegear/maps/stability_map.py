@@ -34,10 +34,11 @@ from facegear.floquet.multipliers import (
     transition_matrices,
 )
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array, PiecewiseChebyshev
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.stepping import Family
 from facegear.maps.parallel import Workers, computed, parts_of
 from facegear.support.parameters import finite_array, rpm
+from facegear.support.types import FloatArray
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8
@@ -140,7 +141,7 @@ def stability_map(
     )
 
 
-def checked_speeds(speeds: ArrayLike) -> Array:
+def checked_speeds(speeds: ArrayLike) -> FloatArray:
     """Check that speeds [rad/s] are finite, positive and ascending, and return them as an array of shape (S,).
 
     Raises
@@ -158,7 +159,7 @@ def checked_speeds(speeds: ArrayLike) -> Array:
     return array
 
 
-def _checked_values(values: ArrayLike) -> Array:
+def _checked_values(values: ArrayLike) -> FloatArray:
     array = finite_array("values", values)
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"values must list at least one value of the parameter, got shape {array.shape}")
@@ -201,7 +202,7 @@ class _Sweep:
         """Numbers of the first, the middle and the last value."""
         return tuple(sorted({0, len(self.values) // 2, len(self.values) - 1}))
 
-    def load_parameters(self, systems: Sequence[PeriodicSystem]) -> Array | None:
+    def load_parameters(self, systems: Sequence[PeriodicSystem]) -> FloatArray | None:
         """Mass, damping and stiffness of each contact, (V, 3, loads), if the systems differ in nothing else."""
         if not all(_same_but_load_parameters(systems[0], other) for other in systems[1:]):
             return None
@@ -244,11 +245,11 @@ class _LoadChunk:
     """Columns along which only load parameters change: systems of each speed, parameters (V, 3, loads)."""
 
     systems: tuple[PeriodicSystem, ...]
-    loads: Array
+    loads: FloatArray
     method: Method | None
 
     @property
-    def periods(self) -> Array:
+    def periods(self) -> FloatArray:
         return np.array([system.period for system in self.systems])
 
     def content(self) -> Iterator[Any]:
@@ -257,7 +258,7 @@ class _LoadChunk:
         for system in self.systems:
             yield from parts_of(system)
 
-    def compute(self) -> Array:
+    def compute(self) -> FloatArray:
         """Spectral radii, shape (V, speeds)."""
         masses, dampings, stiffnesses = self.loads.transpose(1, 0, 2)
         columns = [
@@ -272,8 +273,8 @@ class _ModelChunk:
     """Columns along which anything may change."""
 
     sweep: _Sweep
-    speeds: Array
-    periods: Array
+    speeds: FloatArray
+    periods: FloatArray
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on: of the model's code, what it makes of the first, middle and last value."""
@@ -289,7 +290,7 @@ class _ModelChunk:
             for probe in sweep.probes:
                 yield from parts_of(sweep.models[probe].system(float(speed)))
 
-    def compute(self) -> Array:
+    def compute(self) -> FloatArray:
         """Spectral radii, shape (V, speeds)."""
         return np.stack([_model_column(self.sweep, float(speed)) for speed in self.speeds], axis=1)
 
@@ -297,7 +298,7 @@ class _ModelChunk:
 _Chunk = _LoadChunk | _ModelChunk
 
 
-def _chunks(sweep: _Sweep, speeds: Array) -> list[_Chunk]:
+def _chunks(sweep: _Sweep, speeds: FloatArray) -> list[_Chunk]:
     """Prepare neighbouring columns for the fastest route that suits them.
 
     Load parameters are read from all values at the first speed; at the others the first, middle and last value
@@ -319,11 +320,11 @@ def _chunks(sweep: _Sweep, speeds: Array) -> list[_Chunk]:
     return chunks
 
 
-def _or_empty(loads: Array | None) -> Array:
+def _or_empty(loads: FloatArray | None) -> FloatArray:
     return np.empty(0) if loads is None else loads
 
 
-def _model_column(sweep: _Sweep, speed: float) -> Array:
+def _model_column(sweep: _Sweep, speed: float) -> FloatArray:
     """Spectral radii along one column, shape (V,)."""
     values = np.array(sweep.values)
     systems = [sweep.models[probe].system(speed) for probe in sweep.probes]
@@ -340,11 +341,11 @@ def _model_column(sweep: _Sweep, speed: float) -> Array:
         return _interpolated_column(sweep, speed, GENERAL_ROUTE, scale)
 
 
-def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: Array) -> Array:
+def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: FloatArray) -> FloatArray:
     """Spectral radii along one column from transition matrices at some of its values, shape (V,)."""
     values = np.array(sweep.values)
 
-    def evaluate(chosen: Array) -> Array:
+    def evaluate(chosen: FloatArray) -> FloatArray:
         matrices = transition_matrices([sweep.model_at(v).system(speed) for v in chosen.tolist()], method)
         return np.asarray(scale @ matrices @ np.linalg.inv(scale), dtype=float)
 
@@ -371,7 +372,7 @@ def _spectral_radius(system: PeriodicSystem, method: Method | None) -> float:
     return float(np.abs(multipliers(system, method)[0]))
 
 
-def _error_estimate(sweep: _Sweep, speeds: Array, radii: Array) -> float:
+def _error_estimate(sweep: _Sweep, speeds: FloatArray, radii: FloatArray) -> float:
     """Largest difference of max|λ| from a more accurate method, and rounding, corner cells and middle cell."""
     last_value, last_speed = radii.shape[0] - 1, radii.shape[1] - 1
     cells = {(v, s) for v in (0, last_value) for s in (0, last_speed)} | {(last_value // 2, last_speed // 2)}

@@ -20,10 +20,10 @@ from facegear.floquet.models import Model, parameter_path, replace_parameter
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve, method_for
 from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, rigid_motions
-from facegear.floquet.piecewise import Array
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
 from facegear.support.parameters import ascending, finite_array, positive, within
+from facegear.support.types import FloatArray
 
 _KINDS: tuple[Kind, ...] = get_args(Kind)
 
@@ -270,7 +270,7 @@ class _Search:
         for speed in (self.lowest_speed, middle, self.highest_speed):
             yield from parts_of(self.model.system(speed))
 
-    def compute(self) -> Array:
+    def compute(self) -> FloatArray:
         """Borders, peak, growth rate, modes, kind and order, one row a tongue."""
         found = tongues(
             self.model,
@@ -289,7 +289,7 @@ class _Search:
         return np.array(rows, dtype=float).reshape(-1, 8)
 
 
-def _from_table(table: Array) -> tuple[Tongue, ...]:
+def _from_table(table: FloatArray) -> tuple[Tongue, ...]:
     found = []
     for *speeds, k, j, kind, order in table.tolist():
         lower, upper, peak, growth = speeds

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
-from facegear.floquet.piecewise import SAME_INSTANT, Array, PiecewiseChebyshev
+from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev
 from facegear.support.parameters import finite, finite_array, nonnegative, positive, within
+from facegear.support.types import FloatArray
 
 
 @lru_cache(maxsize=1)
@@ -68,7 +69,7 @@ def tooth_pair_wave(contact_ratio: float, droop: float) -> PiecewiseChebyshev:
     rest = contact_ratio - whole
     breakpoints = [0.0] if rest == 0.0 else [0.0, rest]
 
-    def total(x: Array, piece: int) -> Array:
+    def total(x: FloatArray, piece: int) -> FloatArray:
         count = whole + 1 if rest > 0.0 and piece == 0 else whole
         share = (x + np.arange(count)[:, None]) / contact_ratio
         return np.asarray((1.0 - droop * (2.0 * share - 1.0) ** 2).sum(axis=0))
@@ -187,7 +188,7 @@ def meissner_trace(
     duty: ArrayLike = 0.5,
     damping_ratio: float = 0.0,
     natural_frequency: float = 1.0,
-) -> Array:
+) -> FloatArray:
     """Trace of the transition matrix of Meissner's equation in closed form.
 
     tr Φ = exp(-ϑω0T0) [2 cos a cos b - (p/r + r/p) sin a sin b] with p² = ω0² (1 + ε - ϑ²), r² = ω0² (1 - ε - ϑ²),

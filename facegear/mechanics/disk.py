@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
 from facegear.mechanics.plate import Body, RadialModes, centrifugal_stiffness
-from facegear.support.parameters import FloatArray, finite_array, positive, rad_per_s
+from facegear.support.parameters import finite_array, positive, rad_per_s
+from facegear.support.types import FloatArray
 
 REFERENCE_SPEED = float(rad_per_s(1000.0))
 """End of the speed range over which the reference stiffness is averaged [rad/s of the face gear]."""

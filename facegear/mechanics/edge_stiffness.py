@@ -14,7 +14,8 @@ from facegear.floquet.lobatto import values_to_coefficients
 from facegear.mechanics.disk import unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, collocation_points, fastest_speed
 from facegear.mechanics.plate import Body, plate_quadrature
-from facegear.support.parameters import FloatArray, nonnegative, one_of, positive, within
+from facegear.support.parameters import nonnegative, one_of, positive, within
+from facegear.support.types import FloatArray
 
 Following = Literal["follower", "dead"]
 

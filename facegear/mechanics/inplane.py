@@ -26,7 +26,8 @@ from numpy.typing import ArrayLike
 
 from facegear.floquet.lobatto import lobatto_points, values_to_coefficients
 from facegear.mechanics.plate import Body
-from facegear.support.parameters import FloatArray, finite_array, integer_within, keep, one_of, within
+from facegear.support.parameters import finite_array, integer_within, keep, one_of, within
+from facegear.support.types import FloatArray
 
 Direction = Literal["tangential", "radial"]
 

@@ -17,16 +17,8 @@ from numpy.typing import ArrayLike
 from scipy import linalg, optimize, special
 
 from facegear.geometry.drive import Drive
-from facegear.support.parameters import (
-    STEEL,
-    FloatArray,
-    Material,
-    finite,
-    finite_array,
-    integer_within,
-    keep,
-    within,
-)
+from facegear.support.parameters import STEEL, Material, finite, finite_array, integer_within, keep, within
+from facegear.support.types import FloatArray
 
 BORE_RATIO_RANGE = (0.05, 0.9)
 MAX_NODAL_CIRCLES = 4

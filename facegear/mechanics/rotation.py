@@ -16,17 +16,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from facegear.floquet.collocation import FreeModes, chain, gauss_rule, panel_edges
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
-from facegear.floquet.piecewise import Array, merge_breakpoints
+from facegear.floquet.piecewise import merge_breakpoints
 from facegear.geometry.phases import phase_split
 from facegear.mechanics.disk import coordinates
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import finite_array
-
-ComplexArray = NDArray[np.complex128]
+from facegear.support.types import ComplexArray, FloatArray
 
 #: Gauss nodes a panel, and largest product of fastest frequency and panel length [rad].
 NODES = 12
@@ -54,7 +53,7 @@ class DiskWaves:
     """
 
     eigenvalues: ComplexArray
-    waves: Array
+    waves: FloatArray
     displacement: ComplexArray
     velocity: ComplexArray
     input: ComplexArray
@@ -95,7 +94,7 @@ class DiskWaves:
         return found
 
 
-def _senses(displacement: ComplexArray) -> Array:
+def _senses(displacement: ComplexArray) -> FloatArray:
     """Sense of each wave a e^{ipt} cos nθ + b e^{ipt} sin nθ, first half of the rows a, second half b: b = ±ia."""
     cosine, sine = np.split(displacement, 2)
     ratio = (sine * cosine.conj()).sum(axis=0) / (np.abs(cosine) ** 2).sum(axis=0)
@@ -139,7 +138,9 @@ class TurnedPinions:
         self._waves = known.waves
         self._prepare(system, load, known, chosen)
 
-    def _prepare(self, system: PeriodicSystem, load: ContactLoad, modes: DiskWaves, phases: Array) -> None:
+    def _prepare(
+        self, system: PeriodicSystem, load: ContactLoad, modes: DiskWaves, phases: FloatArray
+    ) -> None:
         shapes = [load.shape.shift(float(phase)) for phase in phases]
         breakpoints = merge_breakpoints([np.zeros(1), *(shape.breakpoints for shape in shapes)])
         samples = load.shape(np.linspace(0.0, 1.0, 16, endpoint=False))
@@ -179,7 +180,7 @@ class TurnedPinions:
         self._push = (columns * half * (h[:, None] * weights)[:, :, None]).swapaxes(0, 1)
         self._free = _oscillations(half[:, 0] ** 2)
 
-    def transition_matrices(self, angles: ArrayLike) -> Array:
+    def transition_matrices(self, angles: ArrayLike) -> FloatArray:
         """Transition matrices in the coordinates (Re, Im) of the waves.
 
         Parameters
@@ -200,7 +201,7 @@ class TurnedPinions:
         parts = [self._batch(turned[begin : begin + batch]) for begin in range(0, turned.shape[0], batch)]
         return np.concatenate(parts)
 
-    def _batch(self, angles: Array) -> Array:
+    def _batch(self, angles: FloatArray) -> FloatArray:
         values, pinions = angles.shape
         panels, n = self._free.shape[0], self._waves.size
         size = pinions * NODES
@@ -232,7 +233,7 @@ def _one_pinion(model: Transverse, speed: float) -> tuple[PeriodicSystem, Contac
     return system, system.loads[0]
 
 
-def _oscillations(decay: ComplexArray) -> Array:
+def _oscillations(decay: ComplexArray) -> FloatArray:
     """Matrices of y → decay y on (Re y, Im y), shape (P, n) -> (P, 2n, 2n)."""
     panels, n = decay.shape
     matrices = np.zeros((panels, 2 * n, 2 * n))
@@ -242,7 +243,7 @@ def _oscillations(decay: ComplexArray) -> Array:
     return matrices
 
 
-def growth_rates_at_angles(model: Transverse, speed: float, pinion_angles: ArrayLike) -> Array:
+def growth_rates_at_angles(model: Transverse, speed: float, pinion_angles: ArrayLike) -> FloatArray:
     """Growth rates of one disk under pinions at many sets of total angles, at one speed.
 
     Parameters

@@ -27,7 +27,6 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, SkewLine, checked_contact_ratio, mesh_period
 from facegear.support.parameters import (
     STEEL,
-    FloatArray,
     Material,
     finite_array,
     keep,
@@ -36,6 +35,7 @@ from facegear.support.parameters import (
     positive,
     within,
 )
+from facegear.support.types import FloatArray
 
 Arm = Literal["printed", "conjugate"]
 Path = Literal["skew_line", "contact_path", "centroid"]

@@ -37,7 +37,6 @@ from facegear.mechanics.disk import (
 from facegear.mechanics.edge_stiffness import Following, driving_force, unit_stiffness
 from facegear.mechanics.plate import Body, RadialModes
 from facegear.support.parameters import (
-    FloatArray,
     MeshLoad,
     finite_array,
     integer_at_least,
@@ -47,6 +46,7 @@ from facegear.support.parameters import (
     positive,
     within,
 )
+from facegear.support.types import FloatArray
 
 __all__ = [
     "Coordinate",

@@ -20,10 +20,8 @@ import numpy as np
 import xarray as xr
 
 from facegear.support.files import written_whole
-from facegear.support.parameters import FloatArray
 from facegear.support.provenance import made_by
-
-TextArray = np.ndarray[Any, np.dtype[np.str_]]
+from facegear.support.types import FloatArray, TextArray
 
 _DIGEST = "content_sha256"
 _NAME = "figure"

@@ -13,9 +13,9 @@ from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from facegear.support.types import FloatArray
 
 WATT_PER_HORSEPOWER = 745.69987
 

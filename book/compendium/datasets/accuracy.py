@@ -12,13 +12,13 @@ from scipy.integrate import solve_ivp
 
 from facegear.floquet import multipliers as floquet
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array
 from facegear.support.labelled import text, variable
+from facegear.support.types import FloatArray
 
 _error = partial(variable, units="1", rtol=1e-5, atol=1e-11)
 
 
-def integrated_transition_matrix(system: PeriodicSystem) -> Array:
+def integrated_transition_matrix(system: PeriodicSystem) -> FloatArray:
     """Transition matrix by numerical integration (2-6): SciPy's DOP853 from breakpoint to breakpoint.
 
     Parameters
@@ -38,7 +38,7 @@ def integrated_transition_matrix(system: PeriodicSystem) -> Array:
         # The instants asked for are inside the piece; at its ends the limit from inside is meant.
         low, high = start + 1e-12, stop - 2e-12
 
-        def rate(fraction: float, flat: Array, low: float = low, high: float = high) -> Array:
+        def rate(fraction: float, flat: FloatArray, low: float = low, high: float = high) -> FloatArray:
             state_matrix = system.state_matrix(np.clip(fraction, low, high))
             return np.asarray((system.period * state_matrix @ flat.reshape(size, size)).ravel())
 

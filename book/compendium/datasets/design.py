@@ -24,7 +24,8 @@ from facegear.maps.tracing import tongues
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse, shape_vector
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import FloatArray, integer_at_least, rad_per_s, rpm
+from facegear.support.parameters import integer_at_least, rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 # Tips are traced to 1e-5 in h/a; the speed of a maximum follows to the root of the accuracy of its height.
 _RATIO, _TIP_SPEED = 2e-5, 0.5

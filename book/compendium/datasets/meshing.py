@@ -13,7 +13,8 @@ from facegear.geometry import flanks
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, PairStates, SkewLine
 from facegear.support.labelled import variable
-from facegear.support.parameters import FloatArray, integer_at_least
+from facegear.support.parameters import integer_at_least
+from facegear.support.types import FloatArray
 from facegear.symbolic import meshing
 
 # The geometry is exact to rounding; what a different machine or library changes stays well below these.

@@ -20,15 +20,8 @@ from facegear.maps.closing import growth_peaks
 from facegear.maps.tracing import tongues
 from facegear.mechanics.gearboxes import DRIVE, ProportionalGearbox
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import (
-    FloatArray,
-    integer_at_least,
-    keep,
-    nonnegative,
-    positive,
-    rad_per_s,
-    rpm,
-)
+from facegear.support.parameters import integer_at_least, keep, nonnegative, positive, rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", rtol=1e-5, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)

@@ -19,12 +19,13 @@ from compendium.datasets.transverse import describe, tongue_table
 from facegear.design.cancellation import Kind, WavePair, interference, phasing_sum, tongue_of, weakened
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import phase_split
-from facegear.maps.parallel import computed, parts_of
-from facegear.maps.tracing import Tongue, tongues
+from facegear.maps.parallel import computed, in_processes, parts_of
+from facegear.maps.tracing import tongues
 from facegear.mechanics.rotation import growth_rates_at_angles
 from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
+from facegear.support.parameters import finite_array, integer_at_least, rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 _number = partial(variable, units="1", atol=1e-9)
@@ -234,13 +235,8 @@ def traced(
     xarray.Dataset
         As :func:`compendium.datasets.transverse.tongue_sections`.
     """
-    from joblib import Parallel, delayed
-
     low, high = (float(rad_per_s(speed)) for speed in speeds_rpm)
-    search = delayed(tongues)
-    found: list[tuple[Tongue, ...]] = list(
-        Parallel(n_jobs=jobs)(search(model, low, high) for model in models.values())
-    )
+    found = in_processes(tongues, [(model, low, high) for model in models.values()], jobs)
     first = next(iter(models.values()))
     return tongue_table(
         found, list(models), f"{describe(first)}, from {speeds_rpm[0]:g} to {speeds_rpm[1]:g} rpm"
@@ -374,8 +370,6 @@ def weak_tongues(
         ``growth`` and ``width`` (factor, pair, layout), over those of one pinion, and ``phasing_sum`` (pair, layout),
         |S|; 0 where there is no tongue.
     """
-    from joblib import Parallel, delayed
-
     arrangements = [(0.0,), *(tuple(layout) for layout in layouts)]
     tasks = [
         (with_pinions(weakened(model, factor), *angles), pair, factor)
@@ -383,7 +377,7 @@ def weak_tongues(
         for pair in pairs.values()
         for angles in arrangements
     ]
-    rows = Parallel(n_jobs=jobs)(delayed(_growth_and_width)(*task) for task in tasks)
+    rows = in_processes(_growth_and_width, tasks, jobs)
     found = np.asarray(rows, dtype=float).reshape(len(factors), len(pairs), len(arrangements), 2)
     relative = found[:, :, 1:] / found[:, :, :1]
     sums = [

@@ -19,7 +19,8 @@ from facegear.mechanics.inplane import EdgeLoadStress
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse, coordinates
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import FloatArray, finite_array, rad_per_s, rpm
+from facegear.support.parameters import finite_array, rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 

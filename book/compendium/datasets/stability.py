@@ -21,10 +21,10 @@ from facegear.floquet import multipliers as floquet
 from facegear.floquet.columns import column_spectral_radii, family_spectral_radii
 from facegear.floquet.hsu import ResonanceBand, resonance_bands
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import Array
 from facegear.mechanics import classical
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import finite_array, integer_at_least
+from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", atol=1e-6)
 _frequency = partial(variable, units="rad/s", atol=1e-9)
@@ -80,10 +80,10 @@ def swing(depth: float, frequencies: Sequence[float], shown: Sequence[float], cy
     )
 
 
-def _motion(system: PeriodicSystem, periods: Array) -> Array:
+def _motion(system: PeriodicSystem, periods: FloatArray) -> FloatArray:
     """q(t) from q = 1, q̇ = 0, by an integrator of SciPy."""
 
-    def rate(fraction: float, state: Array) -> Array:
+    def rate(fraction: float, state: FloatArray) -> FloatArray:
         return np.asarray(system.period * system.state_matrix(fraction) @ state)
 
     solution = solve_ivp(
@@ -233,7 +233,7 @@ def meissner_borders(depths: ArrayLike, count: int, frequencies: tuple[float, fl
     )
 
 
-def _depths_below_one(depths: ArrayLike) -> Array:
+def _depths_below_one(depths: ArrayLike) -> FloatArray:
     values = finite_array("depths", depths)
     if (values < 0.0).any() or (values >= 1.0).any():
         raise ValueError(f"depths must lie in [0, 1), got {values.min():g} to {values.max():g}")
@@ -331,7 +331,7 @@ def bands(
     ]
     labels = sorted({label for row in found for label in row}, key=lambda name: _first(found, name).centre)
 
-    def table(name: str) -> Array:
+    def table(name: str) -> FloatArray:
         return np.array(
             [[getattr(row[label], name) if label in row else np.nan for row in found] for label in labels]
         ).reshape(len(labels), len(depths))

@@ -22,10 +22,12 @@ from facegear.floquet.models import replace_parameter
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.radau import Radau
+from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import borders, tongues
 from facegear.mechanics.gearboxes import HIGHEST_SPEED_RPM, ProportionalGearbox, TorsionalFigure
 from facegear.support.labelled import filled_labels, filled_rows, text, variable
-from facegear.support.parameters import FloatArray, finite_array, integer_at_least, rad_per_s, rpm
+from facegear.support.parameters import finite_array, integer_at_least, rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 METHOD = Radau()
 """Rule of all maps and tongues of the chapter: shafts are stiff and damped."""
@@ -218,12 +220,10 @@ def growth_map(
     xarray.Dataset
         ``growth_rate`` (parameter, speed_rpm) [1/s], unstable where positive.
     """
-    from joblib import Parallel, delayed
-
     array = finite_array("values", values)
     base = figure.model(**options)
     models = [replace_parameter(base, figure.parameter, value) for value in array.tolist()]
-    rows = Parallel(n_jobs=jobs)(delayed(growth_row)(model, speeds_rpm) for model in models)
+    rows = in_processes(growth_row, [(model, speeds_rpm) for model in models], jobs)
     both = (figure.parameter, "speed_rpm")
     return xr.Dataset(
         {"growth_rate": _growth(both, np.stack(rows), "Growth rate ln(max|λ|)/T0")},

@@ -20,7 +20,8 @@ from facegear.maps.sensitivity import border_derivatives, parameter_value
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.gearboxes import DRIVE, ProportionalGearbox
 from facegear.support.labelled import filled_labels, filled_rows, text, variable
-from facegear.support.parameters import FloatArray, integer_at_least, rad_per_s, rpm
+from facegear.support.parameters import integer_at_least, rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", rtol=1e-5, atol=1e-3)
 _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)

@@ -27,7 +27,7 @@ from facegear.plotting.style import (
     panels,
     styled,
 )
-from facegear.support.parameters import FloatArray
+from facegear.support.types import FloatArray
 
 _MM = 1e3
 
