@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.collocation import FreeMotion, UnsuitableSystemError
-from facegear.floquet.lobatto import interleaved, lobatto_points, values_to_coefficients
 from facegear.floquet.multipliers import AdaptiveMagnus, Method, transition_matrices
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
+from facegear.floquet.series import ChebyshevSeries, interleaved
 from facegear.support.parameters import finite_array
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -206,7 +205,7 @@ def interpolated_spectral_radii(
     array, shape (V,)
         From matrices evaluated point by point, if interpolation takes as many evaluations.
     """
-    series = _Series.resolved(evaluate, points, tolerance)
+    series = _resolved(evaluate, points, tolerance)
     if series is None:
         return _spectral_radii(evaluate(points))
     block = None
@@ -220,68 +219,31 @@ def _spectral_radii(matrices: FloatArray) -> FloatArray:
     return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
 
 
-@dataclass(frozen=True, eq=False)
-class _Series:
-    """A matrix function on [low, high] by its values, (K + 1, d, d), at the points cos(π j/K) of the interval."""
-
-    low: float
-    high: float
-    values: FloatArray
-
-    @classmethod
-    def resolved(
-        cls, evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float
-    ) -> _Series | None:
-        """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
-        low, high = float(points.min()), float(points.max())
-        degree = _LOWEST_DEGREE
-        if degree + 1 >= points.size or low == high:
+def _resolved(
+    evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float
+) -> ChebyshevSeries | None:
+    """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
+    low, high = float(points.min()), float(points.max())
+    if points.size <= _LOWEST_DEGREE + 1 or low == high:
+        return None
+    series = ChebyshevSeries.sampled(evaluate, low, high, _LOWEST_DEGREE)
+    while series.tail > tolerance:
+        if 2 * series.degree + 1 >= points.size:
             return None
-        series = cls(low, high, evaluate((low + high) / 2.0 + (high - low) / 2.0 * lobatto_points(degree)))
-        while series.tail > tolerance:
-            if 2 * series.degree + 1 >= points.size:
-                return None
-            series = cls(low, high, interleaved(series.values, evaluate(series.between)))
-        return series
-
-    @property
-    def degree(self) -> int:
-        """Degree K."""
-        return int(self.values.shape[0]) - 1
-
-    @property
-    def between(self) -> FloatArray:
-        """Points that the rule of twice the degree adds, shape (K,)."""
-        nodes = lobatto_points(2 * self.degree)[1::2]
-        return (self.low + self.high) / 2.0 + (self.high - self.low) / 2.0 * nodes
-
-    @cached_property
-    def coefficients(self) -> FloatArray:
-        """Chebyshev coefficients, (K + 1, d, d)."""
-        return np.tensordot(values_to_coefficients(self.degree), self.values, axes=1)
-
-    @property
-    def tail(self) -> float:
-        """Size of the last two coefficients relative to the largest entry or 1: one can be small by accident."""
-        last = float(np.abs(self.coefficients[-2:]).max())
-        return last / max(float(np.abs(self.values).max()), 1.0)
-
-    def tail_at(self, degree: int) -> float:
-        """Tail of a series of higher degree, if coefficients go on to fall as they do in the upper half of this one."""
-        sizes = np.abs(self.coefficients).max(axis=(1, 2))
-        middle = self.degree // 2
-        fall = float(sizes[-2:].max() / sizes[middle - 1 : middle + 1].max())
-        exponent: float = (degree - self.degree) / (self.degree - middle)
-        return float(self.tail * fall**exponent)
-
-    def __call__(self, points: FloatArray) -> FloatArray:
-        """Interpolate at points (V,), shape (V, d, d)."""
-        local = (points - (self.low + self.high) / 2.0) / ((self.high - self.low) / 2.0)
-        basis = np.polynomial.chebyshev.chebvander(np.clip(local, -1.0, 1.0), self.degree)
-        return np.tensordot(basis, self.coefficients, axes=1)
+        series = series.refined(evaluate)
+    return series
 
 
-def _leading_block(series: _Series, tolerance: float, most: int) -> _Series | None:
+def _tail_at(series: ChebyshevSeries, degree: int) -> float:
+    """Tail of a series of higher degree, if coefficients go on to fall as they do in the upper half of this one."""
+    sizes = np.abs(series.coefficients).max(axis=(1, 2))
+    middle = series.degree // 2
+    fall = float(sizes[-2:].max() / sizes[middle - 1 : middle + 1].max())
+    exponent: float = (degree - series.degree) / (series.degree - middle)
+    return float(series.tail * fall**exponent)
+
+
+def _leading_block(series: ChebyshevSeries, tolerance: float, most: int) -> ChebyshevSeries | None:
     """Blocks with the eigenvalues of largest modulus, r of them, as a series of (r, r) matrices.
 
     In fixed coordinates (y, z) the invariant subspace of the r largest eigenvalues is z = X y, and the matrix acts on
@@ -297,7 +259,7 @@ def _leading_block(series: _Series, tolerance: float, most: int) -> _Series | No
         block = replace(series, values=blocks)
         if block.tail <= tolerance:
             return block
-        if 2 * block.degree > most or block.tail_at(most) > tolerance:
+        if 2 * block.degree > most or _tail_at(block, most) > tolerance:
             return None
         between = series(series.between)
         more_moduli, more_vectors = _ordered_eigenvectors(between)

@@ -16,7 +16,6 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from facegear.floquet.collocation import UnsuitableSystemError, is_suitable
-from facegear.floquet.lobatto import interleaved, lobatto_points, values_to_coefficients
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import (
     AdaptiveMagnus,
@@ -27,6 +26,7 @@ from facegear.floquet.multipliers import (
     transition_matrices,
 )
 from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.series import ChebyshevSeries, lobatto_coefficients
 from facegear.floquet.stepping import Family
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -101,40 +101,12 @@ class FrozenMotions:
         half = (high - low) / 2.0
         # Twice the largest angle is far beyond the last Bessel function that counts.
         turn = float(np.abs(self.exponents.imag).max()) * half
-        nodes = low + half * (1.0 + lobatto_points(min(_LONGEST, 2 * int(turn) + 64)))
+        nodes = low + half * (1.0 + chebyshev.chebpts2(min(_LONGEST, 2 * int(turn) + 64) + 1))
         decaying = np.minimum(self.exponents.real, 0.0) + 1j * self.exponents.imag
         motions = np.exp(decaying * nodes[:, None])
-        sizes = np.abs(values_to_coefficients(nodes.size - 1) @ motions).max(axis=1)
+        sizes = np.abs(lobatto_coefficients(motions)).max(axis=1)
         last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
         return max(_LOWEST_DEGREE, 2 * ((last + 2) // 2))
-
-
-@dataclass(frozen=True, eq=False)
-class _Window:
-    """Chebyshev series of the scaled transition matrix for slowness 1/speed between `low` and `high`."""
-
-    low: float
-    high: float
-    coefficients: FloatArray
-
-    def values(self, slowness: FloatArray) -> FloatArray:
-        """Matrices, shape (m, d, d)."""
-        return self._sum(self.coefficients, slowness)
-
-    def slopes(self, slowness: FloatArray) -> FloatArray:
-        """Their derivatives by slowness, shape (m, d, d)."""
-        return self._sum(self._slope_coefficients, slowness)
-
-    @cached_property
-    def _slope_coefficients(self) -> FloatArray:
-        half = (self.high - self.low) / 2.0
-        return np.asarray(chebyshev.chebder(self.coefficients, axis=0) / half, dtype=float)
-
-    def _sum(self, coefficients: FloatArray, slowness: FloatArray) -> FloatArray:
-        local = (slowness - (self.high + self.low) / 2.0) / ((self.high - self.low) / 2.0)
-        angle = np.arccos(np.clip(local, -1.0, 1.0))
-        basis = np.cos(angle[:, None] * np.arange(coefficients.shape[0]))
-        return np.tensordot(basis, coefficients, axes=1)
 
 
 def _unheard(count: int) -> None:
@@ -165,7 +137,7 @@ class MultiplierCurve:
     lowest_speed: float
     highest_speed: float
     motions: FrozenMotions
-    windows: tuple[_Window, ...]
+    windows: tuple[ChebyshevSeries, ...]
     looked_at: Callable[[int], object] = _unheard
 
     @classmethod
@@ -231,21 +203,21 @@ class MultiplierCurve:
         left_out = np.sqrt(len(terms) * np.append(np.cumsum(sizes[::-1] ** 2)[::-1], 0.0))
         kept = basis[:, : int(np.argmax(left_out <= _TOLERANCE / 10.0))]
         windows = (
-            _Window(window.low, window.high, np.asarray(kept.T @ window.coefficients @ kept, dtype=float))
+            ChebyshevSeries(window.low, window.high, np.asarray(kept.T @ window.values @ kept, dtype=float))
             for window in self.windows
         )
         return replace(self, windows=tuple(windows))
 
     def transition_matrices(self, speeds: FloatArray) -> FloatArray:
         """Scaled Φ at speeds (m,), shape (m, 2n, 2n)."""
-        return self._by_window(speeds, _Window.values)
+        return self._by_window(speeds, ChebyshevSeries.__call__)
 
     def slopes(self, speeds: FloatArray) -> FloatArray:
         """Differentiate the scaled Φ by 1/speed at speeds (m,), shape (m, 2n, 2n)."""
-        return self._by_window(speeds, _Window.slopes)
+        return self._by_window(speeds, ChebyshevSeries.derivative)
 
     def _by_window(
-        self, speeds: FloatArray, evaluate: Callable[[_Window, FloatArray], FloatArray]
+        self, speeds: FloatArray, evaluate: Callable[[ChebyshevSeries, FloatArray], FloatArray]
     ) -> FloatArray:
         slowness = 1.0 / np.asarray(speeds, dtype=float)
         self.looked_at(slowness.size)
@@ -305,24 +277,21 @@ def _windows(
     high: float,
     tolerance: float,
     cuts: int,
-) -> list[_Window]:
+) -> list[ChebyshevSeries]:
     """Series on one window, or on halves of it where its degree does not suffice."""
-    middle, half = (low + high) / 2.0, (high - low) / 2.0
-    degree = motions.degree(low, high)
-    values = evaluate(middle + half * lobatto_points(degree))
-    for _ in range(_DOUBLINGS + 1):
-        if values.shape[0] <= degree:
-            values = interleaved(values, evaluate(middle + half * lobatto_points(degree)[1::2]))
-        coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
-        tail = np.abs(coefficients[-2:]).max()
-        if tail <= tolerance * max(1.0, float(np.abs(values).max())):
-            return [_Window(low, high, coefficients)]
-        degree *= 2
+    series = ChebyshevSeries.sampled(evaluate, low, high, motions.degree(low, high))
+    for _ in range(_DOUBLINGS):
+        if series.tail <= tolerance:
+            return [series]
+        series = series.refined(evaluate)
+    if series.tail <= tolerance:
+        return [series]
     if cuts == 0:
         raise ArithmeticError(
             f"transition matrices do not vary smoothly with speed between {1.0 / high:.6g} and {1.0 / low:.6g} rad/s: "
-            f"the last Chebyshev coefficient is {tail:.2g}"
+            f"the last Chebyshev coefficient is {series.tail:.2g} of the largest entry"
         )
+    middle = (low + high) / 2.0
     halves = ((low, middle), (middle, high))
     return [window for part in halves for window in _windows(evaluate, motions, *part, tolerance, cuts - 1)]
 

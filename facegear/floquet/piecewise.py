@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
+from scipy.fft import dct
 
 from facegear.support.parameters import finite, finite_array, integer_at_least, keep
 from facegear.support.types import FloatArray
@@ -25,30 +26,11 @@ Side = Literal["left", "right"]
 SAME_INSTANT = 1e-12
 
 
-def chebyshev_points(count: int) -> FloatArray:
-    """Chebyshev points of the first kind on [-1, 1], ascending, shape (count,)."""
-    return -np.cos(np.pi * (np.arange(count) + 0.5) / count)
-
-
-def chebyshev_coefficients(values: FloatArray) -> FloatArray:
-    """Chebyshev coefficients of the interpolant through `values` at :func:`chebyshev_points`.
-
-    Parameters
-    ----------
-    values : array, shape (count, ...)
-        Samples along the first axis.
-
-    Returns
-    -------
-    array, shape (count, ...)
-    """
-    count = values.shape[0]
-    # x_j = -cos(θ_j), so T_k(x_j) = (-1)^k cos(k θ_j).
-    theta = np.pi * (np.arange(count) + 0.5) / count
-    order = np.arange(count)
-    transform = (-1.0) ** order[:, None] * np.cos(np.outer(order, theta)) * (2.0 / count)
-    transform[0] /= 2.0
-    return np.tensordot(transform, values, axes=(1, 0))
+def _coefficients(values: FloatArray) -> FloatArray:
+    """Chebyshev coefficients of the interpolant through values at `chebpts1`, ascending, shape (count, ...)."""
+    coefficients = np.asarray(dct(values[::-1], axis=0) / values.shape[0], dtype=float)
+    coefficients[0] /= 2.0
+    return coefficients
 
 
 def _chebyshev_basis(x: FloatArray, degree: int) -> FloatArray:
@@ -131,7 +113,7 @@ class PiecewiseChebyshev:
 
         def sample(piece: int, count: int) -> FloatArray:
             middle, half = (ends[piece] + edges[piece]) / 2.0, (ends[piece] - edges[piece]) / 2.0
-            values = np.asarray(function(middle + half * chebyshev_points(count), piece), dtype=float)
+            values = np.asarray(function(middle + half * chebyshev.chebpts1(count), piece), dtype=float)
             values = values[:, None] if values.ndim == 1 else values
             if values.ndim != 2 or values.shape[0] != count:
                 raise ValueError(
@@ -148,7 +130,7 @@ class PiecewiseChebyshev:
         for piece in range(edges.size):
             count = 9
             while True:
-                coefficients = chebyshev_coefficients(sample(piece, count))
+                coefficients = _coefficients(sample(piece, count))
                 scale = max(scale, float(np.abs(coefficients).max()))
                 sizes = np.abs(coefficients).max(axis=1)
                 # Three coefficients, because an even or odd function has every second one zero.

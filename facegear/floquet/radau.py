@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.special import roots_jacobi
 
 from facegear.floquet.piecewise import SAME_INSTANT
 from facegear.floquet.stepping import Family
@@ -50,13 +51,8 @@ class _Rule(NamedTuple):
 
 @lru_cache(maxsize=16)
 def _rule(stages: int) -> _Rule:
-    # Right Radau nodes are the roots of P_m − P_(m−1).
-    series = np.zeros(stages + 1)
-    series[-2:] = -1.0, 1.0
-    nodes = np.sort(legendre.legroots(series).real)
-    # One step of Newton's method for the last digits, and the end exactly.
-    nodes -= legendre.legval(nodes, series) / legendre.legval(nodes, legendre.legder(series))
-    nodes[-1] = 1.0
+    # Right Radau nodes are the roots of P_m − P_(m−1): the end, and those of a Jacobi polynomial.
+    nodes = np.append(roots_jacobi(stages - 1, 1.0, 0.0)[0], 1.0)
     vander = legendre.legvander(nodes, stages - 1)
     to_legendre = np.asarray(np.linalg.inv(vander), dtype=float)
     integrated = np.stack(

@@ -18,12 +18,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.floquet.multipliers import AdaptiveMagnus, Method
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
-from facegear.floquet.piecewise import chebyshev_coefficients, chebyshev_points
+from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
 from facegear.maps.tracing import Tongue
 from facegear.support.parameters import integer_at_least, positive
@@ -98,23 +97,22 @@ def system_derivative(model: Model, speed: float, parameter: str) -> SystemDeriv
             f"{parameter} is 0 and sets no scale for its derivative; give the model a small value instead"
         )
     half = _REACH * abs(value)
-    nodes = (value + half * chebyshev_points(_NODES)).tolist()
+    nodes = ChebyshevSeries.points_of(value - half, value + half, _NODES - 1).tolist()
     present = _system(model, speed, parameter, value)
     systems = [_system(model, speed, parameter, node) for node in nodes]
     for system in systems:
         _same_shapes(present, system, parameter)
 
     def derivative(name: str, parts: Sequence[Any]) -> FloatArray:
-        values = np.array(parts, dtype=float)
-        series = chebyshev_coefficients(values)
-        size = np.abs(series).max()
-        if np.abs(series[-2:]).max() > _TAIL * size:
+        series = ChebyshevSeries(value - half, value + half, np.array(parts, dtype=float))
+        sizes = np.abs(series.coefficients)
+        if sizes[-2:].max() > _TAIL * sizes.max():
             raise ArithmeticError(
                 f"{name} does not vary smoothly with {parameter} within {100 * _REACH:.0f} % of {value:.6g}"
             )
         # Rounding alone is no dependence.
-        series[1:, (values == values[0]).all(axis=0)] = 0.0
-        return np.asarray(chebyshev.chebval(0.0, chebyshev.chebder(series, axis=0)) / half, dtype=float)
+        constant = (series.values == series.values[0]).all(axis=0)
+        return np.where(constant, 0.0, series.derivative(value))
 
     def of_loads(name: str) -> FloatArray:
         return derivative(

@@ -8,11 +8,10 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
-from facegear.floquet.lobatto import values_to_coefficients
+from facegear.floquet.series import ChebyshevSeries
 from facegear.mechanics.disk import unit_shape
-from facegear.mechanics.inplane import EdgeLoadStress, collocation_points, fastest_speed
+from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
 from facegear.mechanics.plate import Body, plate_quadrature
 from facegear.support.parameters import nonnegative, one_of, positive, within
 from facegear.support.types import FloatArray
@@ -187,22 +186,23 @@ def unit_stiffness(
     speed = within("speed", speed, 0.0, limit, "rad/s", hint="rpm?")
     octave = max(0, math.ceil(math.log2(speed / _LOWEST_TOP))) if speed > 0.0 else 0
     top = min(_LOWEST_TOP * 2**octave, limit)
-    series = _stiffness_series(body, top, harmonics, following, angles)
-    found: FloatArray = chebyshev.chebval(2 * (speed / top) ** 2 - 1, series)
-    return found
+    return _stiffness_series(body, top, harmonics, following, angles)((speed / top) ** 2)
 
 
 @lru_cache(maxsize=256)
 def _stiffness_series(
     body: Body, top: float, harmonics: int, following: Following, angles: tuple[float, ...]
-) -> FloatArray:
-    """Chebyshev coefficients of the sum of K_f in Ω2² from 0 to the square of `top`, shape (9, n, n)."""
-    t, _ = collocation_points(_SERIES_DEGREE)
-    values = []
-    for speed in top * np.sqrt((t + 1) / 2):
-        stresses = (EdgeLoadStress(body, 1.0, float(speed), harmonics, angle=angle) for angle in angles)
-        values.append(np.sum([edge_load_stiffness(stress, following) for stress in stresses], axis=0))
-    return np.tensordot(values_to_coefficients(_SERIES_DEGREE), np.stack(values), axes=1)
+) -> ChebyshevSeries:
+    """Sum of K_f, (n, n), over (Ω2/top)² from 0 to 1."""
+
+    def sampled(squares: FloatArray) -> FloatArray:
+        values = []
+        for speed in top * np.sqrt(squares):
+            stresses = (EdgeLoadStress(body, 1.0, float(speed), harmonics, angle=angle) for angle in angles)
+            values.append(np.sum([edge_load_stiffness(stress, following) for stress in stresses], axis=0))
+        return np.stack(values)
+
+    return ChebyshevSeries.sampled(sampled, 0.0, 1.0, _SERIES_DEGREE)
 
 
 def driving_force(body: Body, power: float, pinion_speed: float) -> float:

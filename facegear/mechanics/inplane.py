@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from facegear.floquet.lobatto import lobatto_points, values_to_coefficients
+from facegear.floquet.series import ChebyshevSeries
 from facegear.mechanics.plate import Body
 from facegear.support.parameters import finite_array, integer_within, keep, one_of, within
 from facegear.support.types import FloatArray
@@ -51,15 +51,15 @@ class HarmonicField:
         c = b/a and ν [-].
     harmonic : int
         k.
-    coefficients : ndarray, shape (degree + 1, 4, 2)
-        Chebyshev coefficients in s = ln x from ln c to 0 of U, V, P, Q, for τ_k = 1 and σ_rr = 0 at the rim (first)
-        and for σ_rr = 1 and τ_k = 0 (second). Displacements are over a/E.
+    series : ChebyshevSeries
+        In s = ln x from ln c to 0 of U, V, P, Q, for τ_k = 1 and σ_rr = 0 at the rim (first) and for σ_rr = 1 and
+        τ_k = 0 (second), shape (4, 2). Displacements are over a/E.
     """
 
     bore_ratio: float
     poissons_ratio: float
     harmonic: int
-    coefficients: FloatArray
+    series: ChebyshevSeries
 
     def unknowns(self, x: ArrayLike) -> FloatArray:
         """U, V, P, Q at radii x = r/a [-], for both loads, shape (4, 2, ...)."""
@@ -67,10 +67,7 @@ class HarmonicField:
         # The slack covers the rounding of r/a at the edges.
         if not np.all((x >= self.bore_ratio - 1e-12) & (x <= 1.0 + 1e-12)):
             raise ValueError(f"x must lie between the bore ratio {self.bore_ratio} and 1, got {x}")
-        t = np.clip(1.0 - 2.0 * np.log(x) / math.log(self.bore_ratio), -1.0, 1.0)
-        degree = len(self.coefficients) - 1
-        basis = chebyshev.chebvander(t.ravel(), degree).reshape(*t.shape, degree + 1)
-        return np.moveaxis(np.tensordot(basis, self.coefficients, axes=1), (-2, -1), (0, 1))
+        return np.moveaxis(self.series(np.log(x)), (-2, -1), (0, 1))
 
     def stresses(self, x: ArrayLike) -> FloatArray:
         """S, T, H at radii x = r/a over the stress at the rim [-], for both loads, shape (3, 2, ...)."""
@@ -90,8 +87,8 @@ def _degree(bore_ratio: float, harmonic: int) -> int:
 
 @lru_cache(maxsize=1024)
 def collocation_points(degree: int) -> tuple[FloatArray, FloatArray]:
-    """Points t_j = cos(πj/degree) and the matrix of derivatives at them."""
-    t = lobatto_points(degree)
+    """Points t_j = cos(πj/degree), from 1 down to -1, and the matrix of derivatives at them."""
+    t: FloatArray = chebyshev.chebpts2(degree + 1)[::-1]
     ends = np.ones(degree + 1)
     ends[[0, -1]] = 2.0
     ends *= (-1.0) ** np.arange(degree + 1)
@@ -152,10 +149,9 @@ def harmonic_field(bore_ratio: float, poissons_ratio: float, spin: float, harmon
         system[place] = 0.0
         system[place, place] = 1.0
     right[_Q * size, 0] = right[_P * size, 1] = 1.0
-    values = np.linalg.solve(system, right).reshape(4, size, 2).transpose(1, 0, 2)
-    coefficients = np.tensordot(values_to_coefficients(degree), values, axes=1)
-    coefficients.setflags(write=False)
-    return HarmonicField(bore_ratio, poissons_ratio, k, coefficients)
+    values = np.linalg.solve(system, right).reshape(4, size, 2).transpose(1, 0, 2)[::-1]
+    values.setflags(write=False)
+    return HarmonicField(bore_ratio, poissons_ratio, k, ChebyshevSeries(-2.0 * half, 0.0, values))
 
 
 @dataclass(frozen=True)
