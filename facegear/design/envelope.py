@@ -18,10 +18,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from facegear.floquet.multiplier_curves import method_for
-from facegear.floquet.multipliers import Method, growth_rate
+from facegear.floquet.multipliers import growth_rate
+from facegear.maps.peaks import growth_peak
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import Following, driving_force, unit_stiffness
@@ -35,8 +36,8 @@ _FIRST, _RATIO, _LAST = 1 / 8, 1.15, 100.0
 # The same for a whole drive, at which tongues are looked for.
 _LEVELS = (0.3, 0.6, 0.8, 1.0, 1.2, 1.5, 1.9, 2.4, 3.0)
 # Window in which the peak of a tongue is looked for as the power changes, relative to its speed.
-_WINDOW, _WIDEST = 0.004, 0.03
-_MOST_WINDOWS = 60
+# Flutter of the mean system has no sharp peak, so that it may lie far away.
+_WINDOWS = {"window": 0.004, "widest": 0.03, "resolution": 3e-5}
 _MOST_TURNS = 30
 
 
@@ -281,34 +282,7 @@ def _tip(
         power = float(brentq(growth, stable, above, rtol=tolerance / 4))
         if power > above * (1 - tolerance):
             return PowerLimit(power, speed, tongue.label)
-        speed, value = _peak(at(power), method, speed, speed_range)
+        speed, value = growth_peak(at(power), method, speed, speed_range, **_WINDOWS)
         if growth(stable) >= 0.0 or value <= 0.0:
             return PowerLimit(power, speed, tongue.label)
     raise ArithmeticError(f"the tip of tongue {tongue.label} was not found in {_MOST_TURNS} turns")
-
-
-def _peak(
-    model: Transverse, method: Method, guess: float, speed_range: tuple[float, float]
-) -> tuple[float, float]:
-    """Speed near a guess at which the growth rate is largest, and the growth rate there."""
-
-    def loss(speed: float) -> float:
-        return -growth_rate(model.system(speed), method)
-
-    lowest, highest = speed_range
-    centre, width = guess, _WINDOW
-    for _ in range(_MOST_WINDOWS):
-        low, high = max(centre * (1 - width), lowest), min(centre * (1 + width), highest)
-        result = minimize_scalar(loss, bounds=(low, high), method="bounded", options={"xatol": 3e-5 * centre})
-        best, value = float(result.x), -float(result.fun)
-        margin = 0.02 * (high - low)
-        ends = [end for end in (low, high) if abs(best - end) < margin]
-        if not ends:
-            return best, value
-        (end,) = ends
-        if end in speed_range:
-            at_end = -loss(end)
-            return (end, at_end) if at_end >= value else (best, value)
-        # Flutter of the mean system has no sharp peak, so that it may lie far away.
-        centre, width = best, min(2 * width, _WIDEST)
-    raise ArithmeticError(f"no largest growth rate near {guess:.6g} rad/s: the instability was lost")

@@ -11,12 +11,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from facegear.floquet.labels import combination
 from facegear.floquet.models import Model
 from facegear.floquet.multiplier_curves import method_for
-from facegear.floquet.multipliers import Method, growth_rate
+from facegear.floquet.multipliers import growth_rate
+from facegear.maps.peaks import growth_peak
 from facegear.maps.tracing import Tongue, tongues
 from facegear.support.parameters import ascending, finite_array, within
 
@@ -27,8 +28,7 @@ _LEVEL = 0.93
 _FAST_PART = 1 / 3
 # Thickness steps in which the peak of a tongue is followed, relative, and window in which it is looked for.
 _STEP = 0.01
-_WINDOW = 0.004
-_MOST_WINDOWS = 40
+_WINDOWS = {"window": 0.004, "widest": 0.004, "resolution": 2e-6}
 # Speeds at which the growth of flutter is sampled as the thickness changes.
 _FLUTTER_SAMPLES = 15
 
@@ -255,7 +255,9 @@ class _Search:
             # Natural frequencies are nearly in proportion to thickness, until two points tell more.
             exponent = math.log(y1 / y0) / math.log(x1 / x0) if x1 != x0 else 1.0
             guess = y1 * (thickness_ratio / x1) ** min(max(exponent, 0.0), 2.0)
-            speed, value = _peak(self.model_at(thickness_ratio), method, guess, self.speed_range)
+            speed, value = growth_peak(
+                self.model_at(thickness_ratio), method, guess, self.speed_range, **_WINDOWS
+            )
             points.append((thickness_ratio, speed))
             return value
 
@@ -271,34 +273,3 @@ class _Search:
         peak(tip)
         speed = points[-1][1]
         return Lobe(tip, speed, combination(self.model_at(tip).system(speed), method).label)
-
-
-def _peak(
-    model: Model, method: Method, guess: float, speed_range: tuple[float, float]
-) -> tuple[float, float]:
-    """Speed near a guess at which the growth rate is largest, and the growth rate there."""
-
-    def growth(speed: float) -> float:
-        return growth_rate(model.system(speed), method)
-
-    lowest, highest = speed_range
-    centre = min(max(guess, lowest), highest)
-    for _ in range(_MOST_WINDOWS):
-        low, high = max(centre * (1 - _WINDOW), lowest), min(centre * (1 + _WINDOW), highest)
-        result = minimize_scalar(
-            lambda speed: -growth(speed),
-            bounds=(low, high),
-            method="bounded",
-            options={"xatol": 2e-6 * centre},
-        )
-        best, value = float(result.x), -float(result.fun)
-        margin = 0.02 * (high - low)
-        ends = [end for end in (low, high) if abs(best - end) < margin]
-        if not ends:
-            return best, value
-        (end,) = ends
-        if end in speed_range:
-            at_end = growth(end)
-            return (end, at_end) if at_end >= value else (best, value)
-        centre = best
-    raise ArithmeticError(f"no largest growth rate near {guess:.6g} rad/s: the resonance was lost")
