@@ -150,7 +150,7 @@ def disk_matrices(body: Body, speed: ArrayLike) -> tuple[FloatArray, FloatArray]
     )
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)  # a map over thickness goes through all its bodies, speed by speed
 def _disk_terms(body: Body) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Build what the matrices of the disk are made of at any speed.
 
