@@ -121,5 +121,6 @@ class ChebyshevSeries:
         middle, half = (self.low + self.high) / 2.0, (self.high - self.low) / 2.0
         local = np.clip((np.asarray(points, dtype=float) - middle) / half, -1.0, 1.0)
         # NumPy makes one point of a number.
-        basis = chebyshev.chebvander(local, coefficients.shape[0] - 1).reshape(*local.shape, -1)
+        count = coefficients.shape[0]
+        basis = chebyshev.chebvander(local, count - 1).reshape(*local.shape, count)
         return np.tensordot(basis, coefficients, axes=1)

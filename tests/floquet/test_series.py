@@ -53,6 +53,11 @@ def test_a_smooth_function_is_refined_until_its_tail_vanishes():
     np.testing.assert_allclose(series(x.reshape(1, 41)), waves(x)[None], rtol=0.0, atol=1e-12)
 
 
+def test_no_point_has_no_value():
+    series = ChebyshevSeries.sampled(waves, 1.0, 4.0, 4)
+    assert series([]).shape == series.derivative([]).shape == (0, 2, 2)
+
+
 def test_beyond_the_ends_stand_the_ends():
     series = ChebyshevSeries.sampled(waves, 1.0, 4.0, 24)
     np.testing.assert_allclose(series([0.0, 5.0]), waves(np.array([1.0, 4.0])), rtol=0.0, atol=1e-12)
