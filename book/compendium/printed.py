@@ -17,9 +17,9 @@ from typing import Any
 
 import yaml
 
-from facegear.drives.export import write_table
 from facegear.support.files import written_whole
 from facegear.support.parameters import known_keys
+from facegear.support.tables import write_table
 
 REPRODUCED = "reproduced"
 REPRODUCED_UNDER_CONVENTION = "reproduced under a stated convention"
@@ -256,7 +256,7 @@ def remarks_as_markdown(rows: Sequence[LedgerRow]) -> str:
 
 
 def save_csv(chapters: Mapping[int, Sequence[LedgerRow]], path: str | Path) -> Path:
-    """Write all rows as one table, as :func:`facegear.drives.export.write_table` does.
+    """Write all rows as one table, as :func:`facegear.support.tables.write_table` does.
 
     Parameters
     ----------

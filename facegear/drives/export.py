@@ -6,19 +6,15 @@ its axis, the tooth is centred on the −y axis.
 
 from __future__ import annotations
 
-import csv
-import re
-import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from facegear.geometry.solids import Mesh, ToothSurface, tooth_surface
+from facegear.geometry.solids import Mesh, ToothSurface
 from facegear.support.files import written_whole
-
-__all__ = ["results_directory", "tooth_surface", "write_points", "write_stl", "write_table"]
+from facegear.support.tables import write_table
 
 _MM = 1e3
 
@@ -151,56 +147,3 @@ def write_points(surface: ToothSurface, path: str | Path) -> Path:
     for i, axis in enumerate("xyz"):
         columns[f"n_{axis}"] = surface.normals[..., i].ravel()
     return write_table(columns, path)
-
-
-def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
-    """Write columns as CSV.
-
-    Parameters
-    ----------
-    columns : mapping of str to sequence
-        Heading with its unit to values; all of one length. Numbers are written to twelve digits. A heading or text
-        that a spreadsheet would take for a formula, see :func:`defused`, gets an apostrophe before it.
-    path : str or Path
-        The file; its folder is made.
-
-    Returns
-    -------
-    Path
-        The file written, UTF-8 after a byte-order mark, without which Excel reads ° as Â°.
-
-    Raises
-    ------
-    ValueError
-        If the columns differ in length.
-    """
-    path = Path(path)
-    with written_whole(path) as place, place.open("w", encoding="utf-8-sig", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(map(defused, columns))
-        for row in zip(*columns.values(), strict=True):
-            writer.writerow(map(_cell, row))
-    return path
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, float | np.floating):
-        return f"{value:.12g}"
-    return defused(value) if isinstance(value, str) else value
-
-
-def defused(text: str) -> str:
-    """Put an apostrophe before text that a spreadsheet would run as a formula.
-
-    That is text that begins with =, +, -, @, also in full width, or with a tab or the end of a line; a number is none.
-
-    Examples
-    --------
-    >>> defused("=1+1"), defused("-1.5"), defused("mean 2")
-    ("'=1+1", '-1.5', 'mean 2')
-    """
-    first = unicodedata.normalize("NFKC", text[:1])
-    risky = (
-        bool(first) and first in "=+-@\t\r\n" and not re.fullmatch(r"[+-]\d+(\.\d*)?([eE][+-]?\d+)?", text)
-    )
-    return f"'{text}" if risky else text

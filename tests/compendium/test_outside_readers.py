@@ -10,10 +10,12 @@ import pytest
 from compendium import printed
 from facegear.design.changes import effects_of_changes
 from facegear.drives import report
-from facegear.drives.export import tooth_surface, write_points, write_table
+from facegear.drives.export import write_points
 from facegear.geometry.drive import Drive
+from facegear.geometry.solids import tooth_surface
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.support import labelled
+from facegear.support.tables import write_table
 from tests.compendium.test_printed import ENTRY
 from tests.compendium.test_reference import NAMES, table_of
 
