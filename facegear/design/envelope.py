@@ -28,7 +28,7 @@ from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import Following, driving_force, unit_stiffness
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import positive, within
+from facegear.support.parameters import nonnegative, positive, within
 from facegear.support.types import FloatArray
 
 # Powers, over the critical one of the disk alone, at which a disk is tried.
@@ -123,6 +123,7 @@ def critical_power(
     following: Following = "follower",
     harmonics: int = 5,
     angles: Sequence[float] = (0.0,),
+    highest_power: float = 0.0,
 ) -> float:
     """Smallest power of each of one or more equal pinions at which the disk alone is unstable.
 
@@ -141,12 +142,14 @@ def critical_power(
     angles : sequence of float
         Where the forces act [rad], one each. Follower forces add up: two of them make the disk flutter at half the
         power of each.
+    highest_power : float
+        Powers up to this one [W] are tried in any case.
 
     Returns
     -------
     float
         [W]; infinite if the disk is stable up to 100 times the power at which a follower force makes a mode flutter,
-        and without nodal diameters, where the force does no work on the rim.
+        or up to `highest_power` if that is more, and without nodal diameters, where the force does no work on the rim.
 
     Raises
     ------
@@ -174,8 +177,9 @@ def critical_power(
         )
 
     low, high = 0.0, _FIRST
+    last = max(_LAST, nonnegative("highest_power", highest_power, "W") / unit)
     while growth(high) <= 0.0:
-        if high > _LAST:
+        if high > last:
             return math.inf
         low, high = high, high * _RATIO
     return unit * float(brentq(growth, low, high, xtol=1e-12, rtol=1e-12))

@@ -137,6 +137,7 @@ def flutter(body_model: Transverse, duty: Requirements) -> tuple[Row, ...]:
                 following=following,
                 harmonics=complete_harmonics(body),
                 angles=angles,
+                highest_power=duty.power,
             )
             for speed in duty.speed_range
         )

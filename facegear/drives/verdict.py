@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from facegear.design.teeth import root_stress
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share
 from facegear.drives.drive_file import DriveFile
 from facegear.floquet.modal import modal_expansion
@@ -164,7 +165,11 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     Verdict
     """
     low, high = (f"{rpm(speed):.4g}" for speed in file.requirements.speed_range)
-    where = f"from {low} to {high} rpm at {1e-3 * file.requirements.power:.4g} kW a pinion"
+    duty = file.requirements
+    where = (
+        f"from {low} to {high} rpm under the driving force of {1e-3 * duty.power:.4g} kW a pinion at "
+        f"{rpm(duty.pinion_speed):.4g} rpm of the pinion"
+    )
     shares = {case: case.found.unstable_share for case in computed}
     unstable = [case for case in computed if shares[case] > 0.0]
     if len(unstable) == len(computed):
@@ -177,14 +182,25 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
         headline = (
             f"Stable at all speeds {where}, under both contact ratios and both directions of the force."
         )
-    if torsional:
+    if torsional and not unstable:
+        headline = f"Not safe: in torsion unstable at some speeds. Of the disk's motion: {headline}"
+    elif torsional:
         headline += " In torsion it is unstable at some speeds."
     elif torsional is not None:
         headline += " In torsion it is stable at all of them."
+    open_cases = sum(not case.found.settled for case in computed)
+    if open_cases:
+        headline += f" NOT SETTLED in {open_cases} of {len(computed)} cases: a larger basis may turn them."
+    stress = root_stress(file.drive, duty.power, duty.pinion_speed)
+    allowed = file.transverse.body.material.yield_strength / duty.safety_factor
+    strength = f"{1e-6 * stress:.4g} MPa at the root of the pinion's tooth, {1e-6 * allowed:.4g} MPa allowed"
+    if stress >= allowed:
+        headline += f" The teeth are not strong enough: {strength}."
     findings = [_finding(case) for case in computed]
     if torsional is not None:
         spoken = _speeds(torsional, file.requirements.speed_range)
         findings.append(f"Torsion: {spoken}{_resonances(torsional)}.")
+    findings.append(f"Strength: {strength}.")
     return Verdict(headline, tuple(findings), _left_out(file))
 
 
@@ -210,7 +226,10 @@ def _finding(case: Case) -> str:
         sure += ", NOT SETTLED"
     spoken = _speeds(found.tongues, found.speed_range)
     if case.flutter_share > 0.0:
-        cause = f"; at {100 * case.flutter_share:.3g} % of the speeds the disk flutters by the driving force alone"
+        cause = (
+            f"; at {100 * case.flutter_share:.3g} % of {_SPEEDS} speeds looked at the driving force alone makes the "
+            "mean system, pinions included, unstable (flutter, or divergence)"
+        )
     else:
         cause = _resonances(found.tongues)
     return f"{case.name[0].upper()}{case.name[1:]}: {spoken}{cause} ({sure})."
@@ -240,8 +259,8 @@ def _left_out(file: DriveFile) -> str:
     torsion = "" if file.torsional is not None else "torsion (the file has no section gearbox), "
     return (
         f"Not included: {torsion}the flexibility of the teeth, how tooth pairs share the load, the inertia of the "
-        "moving contact (total rate), tooth errors and backlash, the stiffness of the housing. All parameters are "
-        "taken as exact; speeds outside the range are not looked at."
+        "moving contact (total rate), tooth errors and backlash, the stiffness of the housing. The driving force is "
+        "the same at all speeds; all parameters are taken as exact; speeds outside the range are not looked at."
     )
 
 

@@ -331,7 +331,7 @@ def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = No
     return np.asarray(np.abs(values).max(axis=-1), dtype=float)
 
 
-def error_estimate(system: PeriodicSystem, method: Method) -> float:
+def error_estimate(system: PeriodicSystem, method: Method | None = None) -> float:
     """Estimate of the error of the spectral radius max|λ| found by a method.
 
     The dominant multiplier of the method is compared with the nearest one of its refinement, and the other way
@@ -341,12 +341,18 @@ def error_estimate(system: PeriodicSystem, method: Method) -> float:
     multiplier may change its sign between two of them. Rounding, which may be common to all of them, is told by what
     changes of Φ as large as its own do to the multiplier.
 
+    Parameters
+    ----------
+    system : PeriodicSystem
+    method : Method, optional
+        :func:`default_method` if left out.
+
     Returns
     -------
     float
         In the units of a multiplier [-].
     """
-    judged = _Judged.of(system, method)
+    judged = _Judged.of(system, default_method(system) if method is None else method)
     values = judged.values
 
     def apart(others: ComplexArray) -> float:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 from facegear.design.envelope import critical_power, disk_growth_rate, largest_power, mode_critical_powers
 from facegear.floquet.models import replace_parameter
@@ -12,7 +13,7 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import tongues
 from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import rad_per_s, watt
+from facegear.support.parameters import MeshLoad, rad_per_s, watt
 
 SPEED = float(rad_per_s(5000.0))
 
@@ -56,6 +57,24 @@ def test_a_dead_force_does_not_feed_the_disk():
     assert disk_growth_rate(lossless, float(watt(300.0)), SPEED, 50.0, following="dead") < 1e-6
     with pytest.raises(ValueError, match="viscous_loss_factor"):
         critical_power(lossless, SPEED, 50.0)
+
+
+def test_powers_up_to_that_of_the_drive_are_tried_in_any_case():
+    """A thin disk: the dead force makes it unstable at more than 100 times what the follower needs."""
+    body = replace(CASE_1, thickness_ratio=0.008)
+    follower = critical_power(body, SPEED, 100.0)
+    assert critical_power(body, SPEED, 100.0, following="dead") == math.inf
+    found = critical_power(body, SPEED, 100.0, following="dead", highest_power=1e4 * follower)
+    assert found > 100 * follower
+    options = {"power": found, "power_speed": SPEED, "following": "dead", "stress_harmonics": 5}
+    model = Transverse(body, MeshLoad(0.0, 0.0, 0.0), **options)
+    for share, unstable in ((0.99, False), (1.01, True)):
+        system = replace(model, power=share * found).system(100.0)
+        zero, one = np.zeros((system.size, system.size)), np.eye(system.size)
+        left = np.block([[zero, one], [-system.stiffness, -system.damping]])
+        right = np.block([[one, zero], [zero, system.mass]])
+        growth = float(scipy.linalg.eigvals(left, right).real.max())
+        assert (growth > 0.0) == unstable
 
 
 RANGE = (float(rad_per_s(930.0)), float(rad_per_s(1000.0)))

@@ -1,6 +1,7 @@
 """Verdict on a drive: driving force, contact ratio, basis, in words."""
 
 import html.parser
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -103,7 +104,7 @@ class TestWords:
             ((True, True, True, True), "Not safe"),
             (
                 (False, False, False, False),
-                "Stable at all speeds from 95.49 to 1050 rpm at 447.4 kW a pinion",
+                "Stable at all speeds from 95.49 to 1050 rpm under the driving force of 447.4 kW a pinion at 5000 rpm",
             ),
             ((True, False, True, False), "depends on whether the driving force follows the bent rim."),
             ((True, True, False, False), "depends on the contact ratio."),
@@ -123,13 +124,19 @@ class TestWords:
 
     def test_torsion_is_part_of_it(self):
         stable = case("Tregold", "follower")
-        assert "In torsion it is unstable" in self.said(stable, torsional=stable_or(BAD)).headline
+        alone = self.said(stable, torsional=stable_or(BAD)).headline
+        assert alone.startswith(
+            "Not safe: in torsion unstable at some speeds. Of the disk's motion: Stable at all"
+        )
+        both = self.said(case("Tregold", "follower", *BAD), torsional=stable_or(BAD)).headline
+        assert both.startswith("Not safe: unstable at some speeds")
+        assert both.endswith("In torsion it is unstable at some speeds.")
         assert "In torsion it is stable" in self.said(stable, torsional=()).headline
         assert "torsion (the file has no section gearbox)" in self.said(stable).left_out
 
     def test_speeds_in_rpm_with_four_digits(self):
         many = tuple((10.0 + 10 * i, 11.0 + 10 * i + 0.1 * i, 1.0) for i in range(5))
-        (finding,) = self.said(case("Tregold", "follower", *many)).findings
+        finding, _ = self.said(case("Tregold", "follower", *many)).findings
         assert "286.5 to 297.9, 382 to 394.4, 477.5 to 490.8 rpm and 2 narrower intervals" in finding
         assert "rad/s" not in finding
         assert "parametric resonance, the strongest (1+2)/1" in finding
@@ -139,12 +146,28 @@ class TestWords:
         )
 
     def test_what_has_not_settled_says_so(self):
-        (finding,) = self.said(case("Tregold", "follower", *BAD, settled=False, moved=0.2)).findings
+        said = self.said(case("Tregold", "follower", *BAD, settled=False, moved=0.2))
+        finding, _ = said.findings
         assert "NOT SETTLED" in finding
+        assert "NOT SETTLED in 1 of 1 cases" in said.headline
+        assert "NOT SETTLED" not in self.said(case("Tregold", "follower")).headline
+
+    def test_teeth_that_are_too_weak_are_part_of_it(self):
+        strong = self.said(case("Tregold", "follower"))
+        assert "strong enough" not in strong.headline
+        weak = replace(self.FILE.requirements, power=3.0 * self.FILE.requirements.power)
+        said = verdict.verdict(replace(self.FILE, requirements=weak), (case("Tregold", "follower"),), None)
+        stress = float(re.search(r"The teeth are not strong enough: ([\d.]+) MPa", said.headline)[1])
+        # In proportion to the power.
+        spoken = re.search(
+            r"Strength: ([\d.]+) MPa at the root of the pinion's tooth, ([\d.]+)", strong.findings[-1]
+        )
+        assert stress == pytest.approx(3.0 * float(spoken[1]), rel=1e-3)
+        assert float(spoken[1]) < float(spoken[2]) < stress
 
     def test_flutter_is_named(self):
-        (finding,) = self.said(case("Tregold", "follower", *BAD, flutter=0.5)).findings
-        assert "at 50 % of the speeds the disk flutters by the driving force alone" in finding
+        finding, _ = self.said(case("Tregold", "follower", *BAD, flutter=0.5)).findings
+        assert "at 50 % of 61 speeds looked at the driving force alone makes the mean system" in finding
 
 
 def stable_or(intervals):

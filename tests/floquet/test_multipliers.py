@@ -441,6 +441,11 @@ def test_batched_exponentials_against_scipy_one_by_one(seed, size, norm):
         assert np.abs(got - exact).max() <= 1e-12 * max(1.0, norm) * max(np.abs(exact).max(), 1.0)
 
 
+def test_the_error_is_estimated_for_the_default_method():
+    system = mathieu(1.0, 0.1)
+    assert 0.0 < error_estimate(system) == pytest.approx(error_estimate(system, Collocation()), rel=1e-6)
+
+
 def test_default_method_depends_on_the_free_motion():
     assert default_method(mathieu(1.0, 0.1)) == Collocation()
     assert default_method(mathieu(0.0, 0.1)) == AdaptiveMagnus()
