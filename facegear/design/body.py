@@ -111,6 +111,11 @@ class Requirements:
             speed_range=ascending("speed_range", self.speed_range, "rad/s"),
         )
 
+    def root_stresses(self, body: Body) -> tuple[float, float]:
+        """Bending stress at the root of the pinion's tooth (4-20, 4-21), and σ_Y/SF that is allowed (4-22) [Pa]."""
+        stress = root_stress(body.drive, self.power, self.pinion_speed)
+        return stress, body.material.yield_strength / self.safety_factor
+
 
 @dataclass(frozen=True)
 class BodyDesign:
@@ -162,8 +167,7 @@ def design_body(
 
 def _design(drive: Drive, critical: CriticalThickness, requirements: Requirements) -> BodyDesign:
     body = Body(drive, critical.thickness_ratio)
-    stress = root_stress(drive, requirements.power, requirements.pinion_speed)
-    return BodyDesign(body, critical, stress, body.material.yield_strength / requirements.safety_factor)
+    return BodyDesign(body, critical, *requirements.root_stresses(body))
 
 
 def design_family(

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from facegear.design.body import Requirements
 from facegear.design.envelope import critical_power
-from facegear.design.teeth import root_stress, root_thickness
+from facegear.design.teeth import root_thickness
 from facegear.drives.basis import unstable_share
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.verdict import Case
@@ -95,11 +95,9 @@ def strength(file: DriveFile) -> tuple[Row, ...]:
     tuple of Row
         Root thickness [mm], stress, allowable stress [MPa], their ratio [-], safe if above 1.
     """
-    duty, drive = file.requirements, file.drive
-    stress = root_stress(drive, duty.power, duty.pinion_speed)
-    allowed = file.transverse.body.material.yield_strength / duty.safety_factor
+    stress, allowed = file.requirements.root_stresses(file.transverse.body)
     return (
-        Row("root thickness of the pinion's tooth", 1e3 * root_thickness(drive), "mm"),
+        Row("root thickness of the pinion's tooth", 1e3 * root_thickness(file.drive), "mm"),
         Row("largest stress at the root", 1e-6 * stress, "MPa"),
         Row("allowable stress", 1e-6 * allowed, "MPa"),
         Row("allowable over largest stress", allowed / stress, "1"),

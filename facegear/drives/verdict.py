@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from facegear.design.teeth import root_stress
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share
 from facegear.drives.drive_file import DriveFile
 from facegear.floquet.modal import modal_expansion
@@ -191,8 +190,7 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     open_cases = sum(not case.found.settled for case in computed)
     if open_cases:
         headline += f" NOT SETTLED in {open_cases} of {len(computed)} cases: a larger basis may turn them."
-    stress = root_stress(file.drive, duty.power, duty.pinion_speed)
-    allowed = file.transverse.body.material.yield_strength / duty.safety_factor
+    stress, allowed = duty.root_stresses(file.transverse.body)
     strength = f"{1e-6 * stress:.4g} MPa at the root of the pinion's tooth, {1e-6 * allowed:.4g} MPa allowed"
     if stress >= allowed:
         headline += f" The teeth are not strong enough: {strength}."

@@ -272,8 +272,8 @@ def tongue_sections(
     -------
     xarray.Dataset
         ``lower``, ``upper``, ``peak`` [rpm] and ``largest_growth`` [1/s] over (section, tongue), NaN beyond the
-        tongues of a section; coordinate ``section`` holds `values`. Labels of the tongues in the attribute
-        ``labels``, one line a section, separated by blanks.
+        tongues of a section; coordinate ``section`` holds `values`. Labels of the tongues in the
+        coordinate ``label``, empty there.
     """
     low, high = rad_per_s(speeds_rpm[0]), rad_per_s(speeds_rpm[1])
     sections = borders(model, parameter, values, low, high, jobs=jobs)
