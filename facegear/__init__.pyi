@@ -13,11 +13,11 @@ from .floquet.piecewise import PiecewiseChebyshev as PiecewiseChebyshev
 from .geometry.drive import Drive as Drive
 from .geometry.kinematics import ContactPath as ContactPath
 from .geometry.kinematics import SkewLine as SkewLine
-from .geometry.kinematics import mesh_period as mesh_period
 from .geometry.phases import phase_split as phase_split
 from .maps.stability_map import stability_map as stability_map
-from .maps.tracing import search_seconds as search_seconds
 from .maps.tracing import tongues as tongues
+from .mechanics.contact import Contact as Contact
+from .mechanics.edge_stiffness import DrivingForce as DrivingForce
 from .mechanics.inplane import EdgeLoadStress as EdgeLoadStress
 from .mechanics.plate import Body as Body
 from .mechanics.torsional import Gearbox as Gearbox
@@ -32,9 +32,11 @@ from .support.parameters import watt as watt
 __all__ = [
     "STEEL",
     "Body",
+    "Contact",
     "ContactLoad",
     "ContactPath",
     "Drive",
+    "DrivingForce",
     "EdgeLoadStress",
     "Gearbox",
     "MeshLoad",
@@ -47,7 +49,6 @@ __all__ = [
     "critical_thickness",
     "error_estimate",
     "growth_rate",
-    "mesh_period",
     "multipliers",
     "phase_split",
     "rad_per_s",
@@ -55,7 +56,6 @@ __all__ = [
     "replace_parameter",
     "resonance_bands",
     "rpm",
-    "search_seconds",
     "stability_map",
     "tongues",
     "transition_matrix",

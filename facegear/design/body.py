@@ -13,6 +13,7 @@ from facegear.design.teeth import root_stress
 from facegear.geometry.drive import Drive
 from facegear.maps.lobes import CriticalThickness, highest_lobes
 from facegear.maps.parallel import in_processes
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE, Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, ascending, keep, positive, within
@@ -62,7 +63,7 @@ def critical_thickness(
         nodal_circles=nodal_circles,
         nodal_diameters=nodal_diameters,
     )
-    model = Transverse(body, load, contact_ratio=contact_ratio)
+    model = Transverse(body, load, contact=Contact(contact_ratio=contact_ratio))
     (found,) = highest_lobes(_thickness_of(model), lowest, [highest], thickness_range)
     return found
 

@@ -35,7 +35,7 @@ from facegear.floquet.collocation import gauss_rule
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.tracing import Tongue, tongues
-from facegear.mechanics.disk import coordinates
+from facegear.mechanics.disk import disk_modes
 from facegear.mechanics.rotation import DiskWaves
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import (
@@ -178,7 +178,7 @@ class WavePair:
     def phasing_sum(self, model: Transverse) -> complex:
         """S of the pinions of a model (C-2)."""
         # Where the contact travels with the disk all angles count the other way.
-        number = -self.wave_number if model.travel == "with_disk" else self.wave_number
+        number = round(model.contact.sense) * self.wave_number
         return complex(phasing_sum(model.body.drive.gear_teeth, model.pinion_angles, number, self.order))
 
     def speed(self, model: Transverse) -> float:
@@ -357,7 +357,7 @@ def mode_content(model: Transverse, speed: float, mode: int) -> dict[tuple[int, 
     _, modes = eigh((stiffness + stiffness.T) / 2.0, mass)
     squares = modes[:, number - 1] ** 2 / (modes[:, number - 1] ** 2).sum()
     parts: dict[tuple[int, int], float] = {}
-    for coordinate, square in zip(coordinates(model.body), squares.tolist(), strict=True):
-        key = (coordinate.nodal_circles, coordinate.nodal_diameters)
+    for shape, square in zip(disk_modes(model.body), squares.tolist(), strict=True):
+        key = (shape.nodal_circles, shape.nodal_diameters)
         parts[key] = parts.get(key, 0.0) + square
     return parts

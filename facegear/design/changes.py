@@ -7,21 +7,21 @@ contact as well.
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from facegear.floquet.models import replace_parameter, value_of
+from facegear.floquet.models import Model, is_part, replace_at
 from facegear.floquet.multiplier_curves import method_for
 from facegear.floquet.multipliers import Method, growth_rate
 from facegear.maps.tracing import Tongue, tongues
-from facegear.mechanics.torsional import Torsional
-from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import integer_at_least, rpm
 
@@ -52,74 +52,62 @@ class Change:
     apply: Callable[[Any, float], Any]
 
 
-_TRANSVERSE: Mapping[str, str] = {
-    "thickness of the body": "body.thickness_ratio",
-    "bearing stiffness": "load.stiffness",
-    "bearing damping": "load.damping",
-    "pinion mass": "load.mass",
-    "bore radius": "body.bore_radius",
-    "loss factor of the material": "body.material.viscous_loss_factor",
-    "power of each pinion": "power",
-}
-_TORSIONAL: Mapping[str, str] = {
-    "inertia of the pinion": "box.pinion_inertia",
-    "inertia of the face gear": "box.gear_inertia",
-    "inertia of the load": "box.load_inertia",
-    "mesh stiffness": "box.mesh_stiffness",
-    "mesh damping": "box.mesh_damping",
-    "input shaft stiffness": "box.input_stiffness",
-    "input shaft damping": "box.input_damping",
-    "output shaft stiffness": "box.output_stiffness",
-    "output shaft damping": "box.output_damping",
-}
-
-
-def possible_changes(model: Transverse | Torsional) -> tuple[Change, ...]:
+def possible_changes(model: Model) -> tuple[Change, ...]:
     """Parameters of a model that a designer can change by parts of their value; those that are 0 are left out.
 
     Parameters
     ----------
-    model : Transverse or Torsional
+    model : Model
+        Its fields, and those of the dataclasses it holds, say what they are called
+        (:func:`facegear.support.parameters.designed`).
 
     Returns
     -------
     tuple of Change
-        For several pinions also the angle of each but the first, by parts of the angular pitch, that is its phase.
+        Of a field that lists the angles of pinions one change for each but the first, by parts of the angular pitch,
+        that is its phase.
+
+    Examples
+    --------
+    >>> from facegear.mechanics.cases import EXAMPLE_B
+    >>> [change.name for change in possible_changes(EXAMPLE_B)][:2]
+    ['thickness of the body', 'bore radius']
     """
-    names = _TRANSVERSE if isinstance(model, Transverse) else _TORSIONAL
-    changes = [
-        Change(name, partial(_scaled, parameter=parameter))
-        for name, parameter in names.items()
-        if _is_given(model, parameter)
-    ]
-    pinions = len(model.pinion_angles) if isinstance(model, Transverse) else 0
-    changes += [
-        Change(f"phase of pinion {number + 1}", partial(_rephased, pinion=number))
-        for number in range(1, pinions)
-    ]
-    return tuple(changes)
+    return tuple(_changes(model, ()))
 
 
-def _is_given(model: Any, parameter: str) -> bool:
-    """Whether a parameter has a value that can be scaled: neither 0 nor, as a power may be, left out."""
-    try:
-        return value_of(model, parameter) != 0.0
-    except ValueError:
-        return False
+def _changes(part: Any, path: tuple[str, ...]) -> Iterator[Change]:
+    """List the changes of a dataclass and of those it holds; `path` leads to it from the model."""
+    for each in dataclasses.fields(part):
+        value = getattr(part, each.name)
+        here = (*path, each.name)
+        words = each.metadata.get("designed")
+        if is_part(value):
+            yield from _changes(value, here)
+        elif words is not None and "step" in each.metadata:
+            step = attrgetter(each.metadata["step"])(part)
+            for number in range(1, len(value)):
+                yield Change(f"{words} {number + 1}", partial(_moved, path=here, number=number, step=step))
+        elif words is not None and value:
+            yield Change(words, partial(_scaled, path=here))
 
 
-def _scaled(model: Any, change: float, parameter: str) -> Any:
-    return replace_parameter(model, parameter, value_of(model, parameter) * (1 + change))
+def _at(model: Any, path: tuple[str, ...]) -> Any:
+    return attrgetter(".".join(path))(model)
 
 
-def _rephased(model: Transverse, change: float, pinion: int) -> Transverse:
-    angles = list(model.pinion_angles)
-    angles[pinion] += change * model.body.drive.angular_pitch
-    return replace(model, pinion_angles=angles)
+def _scaled(model: Any, change: float, path: tuple[str, ...]) -> Any:
+    return replace_at(model, path, _at(model, path) * (1 + change))
+
+
+def _moved(model: Any, change: float, path: tuple[str, ...], number: int, step: float) -> Any:
+    values = list(_at(model, path))
+    values[number] += change * step
+    return replace_at(model, path, tuple(values))
 
 
 def effects_of_changes(
-    model: Transverse | Torsional,
+    model: Model,
     found: Sequence[Tongue],
     speed_range: tuple[float, float],
     parameters: str,
@@ -133,7 +121,7 @@ def effects_of_changes(
 
     Parameters
     ----------
-    model : Transverse or Torsional
+    model : Model
     found : sequence of Tongue
         Its tongues.
     speed_range : tuple of float

@@ -15,17 +15,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
 
+from facegear.floquet.models import replace_parameter
 from facegear.floquet.multiplier_curves import method_for
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.peaks import growth_peak
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_matrices
-from facegear.mechanics.edge_stiffness import Following, driving_force, unit_stiffness
+from facegear.mechanics.edge_stiffness import DrivingForce, Following
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import nonnegative, positive, within
@@ -41,13 +42,13 @@ _WINDOWS = {"window": 0.004, "widest": 0.03, "resolution": 3e-5}
 _MOST_TURNS = 30
 
 
-def mode_critical_powers(body: Body, power_speed: float) -> FloatArray:
+def mode_critical_powers(body: Body, pinion_speed: float) -> FloatArray:
     """Power at which each mode of the disk alone begins to flutter under a follower force, to first order.
 
     Parameters
     ----------
     body : Body
-    power_speed : float
+    pinion_speed : float
         Ω1 at that power [rad/s].
 
     Returns
@@ -58,12 +59,12 @@ def mode_critical_powers(body: Body, power_speed: float) -> FloatArray:
     Raises
     ------
     TypeError, ValueError
-        If `power_speed` is not a number greater than 0.
+        If `pinion_speed` is not a number greater than 0.
     """
     rim = np.stack([modes(1.0) for modes in body.modes], axis=1) / body.outer_radius
     diameters = np.arange(body.nodal_diameters + 1)
     material = body.material
-    growth = diameters * driving_force(body, 1.0, power_speed) * rim**2
+    growth = diameters * DrivingForce(1.0, pinion_speed).newtons(body.drive) * rim**2
     growth /= 2 * math.pi * material.density * body.outer_radius * body.thickness
     loss = material.viscous_loss_factor * body.eigenvalues**1.5
     powers = np.full(growth.shape, math.inf)
@@ -73,12 +74,9 @@ def mode_critical_powers(body: Body, power_speed: float) -> FloatArray:
 
 def disk_growth_rate(
     body: Body,
-    power: float,
-    power_speed: float,
+    force: DrivingForce,
     speed: float,
     *,
-    following: Following = "follower",
-    harmonics: int = 5,
     angles: Sequence[float] = (0.0,),
 ) -> float:
     """Growth rate of the disk alone under driving forces: its largest eigenvalue's real part.
@@ -86,12 +84,10 @@ def disk_growth_rate(
     Parameters
     ----------
     body : Body
-    power, power_speed : float
-        P [W] of each pinion at Ω1 [rad/s].
+    force : DrivingForce
+        Of each pinion.
     speed : float
         Ω2 of the face gear [rad/s], 0 or greater.
-    following, harmonics
-        As `following` and `stress_harmonics` of :class:`facegear.mechanics.transverse.Transverse`.
     angles : sequence of float
         Where the forces act [rad], one each.
 
@@ -106,8 +102,7 @@ def disk_growth_rate(
         If an argument is of the wrong kind or outside its range.
     """
     damping, stiffness = disk_matrices(body, speed)
-    force = driving_force(body, power, power_speed)
-    stiffness = stiffness + force * unit_stiffness(body, speed, harmonics, following, tuple(angles))
+    stiffness = stiffness + force.stiffness(body, speed, tuple(angles))
     n = len(stiffness)
     # In the state (scale·q, q') both halves are of one size.
     scale = math.sqrt(float(np.abs(stiffness).max()))
@@ -117,7 +112,7 @@ def disk_growth_rate(
 
 def critical_power(
     body: Body,
-    power_speed: float,
+    pinion_speed: float,
     speed: float,
     *,
     following: Following = "follower",
@@ -133,12 +128,12 @@ def critical_power(
     ----------
     body : Body
         With a viscous loss factor above 0.
-    power_speed : float
+    pinion_speed : float
         Ω1 at that power [rad/s].
     speed : float
         Ω2 of the face gear [rad/s], 0 or greater.
     following, harmonics
-        As `following` and `stress_harmonics` of :class:`facegear.mechanics.transverse.Transverse`.
+        As for :class:`facegear.mechanics.edge_stiffness.DrivingForce`.
     angles : sequence of float
         Where the forces act [rad], one each. Follower forces add up: two of them make the disk flutter at half the
         power of each.
@@ -161,20 +156,13 @@ def critical_power(
         raise ValueError(
             "viscous_loss_factor of the body's material must be greater than 0: without damping any power flutters"
         )
-    unit = float(mode_critical_powers(body, power_speed).min())
+    unit = float(mode_critical_powers(body, pinion_speed).min())
     if unit == math.inf:
         return math.inf
 
     def growth(share: float) -> float:
-        return disk_growth_rate(
-            body,
-            share * unit,
-            power_speed,
-            speed,
-            following=following,
-            harmonics=harmonics,
-            angles=angles,
-        )
+        force = DrivingForce(share * unit, pinion_speed, following, harmonics)
+        return disk_growth_rate(body, force, speed, angles=angles)
 
     low, high = 0.0, _FIRST
     last = max(_LAST, nonnegative("highest_power", highest_power, "W") / unit)
@@ -217,7 +205,7 @@ def largest_power(
     Parameters
     ----------
     model : Transverse
-        With a `power_speed`; its own power does not matter.
+        With a driving force, whose own power does not matter.
     lowest_speed, highest_speed : float
         Range of Ω2 [rad/s].
     tolerance : float
@@ -230,22 +218,22 @@ def largest_power(
     Raises
     ------
     TypeError, ValueError
-        If the model has no `power_speed`, the range is not two ascending positive numbers, or the tolerance is
+        If the model has no driving force, the range is not two ascending positive numbers, or the tolerance is
         outside its range.
     ArithmeticError
         If the peak of a tongue is lost.
     """
-    if model.power_speed is None:
-        raise ValueError("model must have a power and a power_speed, got None")
+    if model.force is None:
+        raise ValueError("force of the model must be a DrivingForce, got None")
     tolerance = within("tolerance", tolerance, 1e-6, 0.1)
     low, high = (
         positive("lowest_speed", lowest_speed, "rad/s"),
         positive("highest_speed", highest_speed, "rad/s"),
     )
-    unit = float(mode_critical_powers(model.body, model.power_speed).min())
+    unit = float(mode_critical_powers(model.body, model.force.pinion_speed).min())
 
     def at(power: float) -> Transverse:
-        return replace(model, power=power)
+        return replace_parameter(model, "force.power", power)
 
     if found := tongues(at(0.0), low, high):
         worst = max(found, key=lambda tongue: tongue.growth_rate)

@@ -54,10 +54,10 @@ def with_basis(model: Transverse, nodal_circles: int, nodal_diameters: int) -> T
     """
     body = replace(model.body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
     load = replace(model.load, stiffness=model.bearing_stiffness / reference_stiffness(body))
-    harmonics = model.stress_harmonics
-    if harmonics >= complete_harmonics(model.body):
-        harmonics = max(harmonics, complete_harmonics(body))
-    return replace(model, body=body, load=load, stress_harmonics=harmonics)
+    force = model.force
+    if force is not None and force.harmonics >= complete_harmonics(model.body):
+        force = replace(force, harmonics=max(force.harmonics, complete_harmonics(body)))
+    return replace(model, body=body, load=load, force=force)
 
 
 def unstable_share(found: Sequence[Tongue], speed_range: tuple[float, float]) -> float:

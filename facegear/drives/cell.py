@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from scipy.integrate import solve_ivp
 
 from facegear.floquet.labels import combination
-from facegear.floquet.models import Model
+from facegear.floquet.models import Coordinate, Model
 from facegear.floquet.multipliers import transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.tracing import Tongue, tongues
-from facegear.mechanics.transverse import Transverse, shape_vector
 from facegear.support.parameters import positive
-from facegear.support.types import ComplexArray
+from facegear.support.types import ComplexArray, FloatArray
 
 UNSTABLE = 1e-8
 """Growth in a period, max|λ| − 1, from which a cell counts as unstable [-], as for tongues."""
@@ -51,10 +52,11 @@ class CellDetail:
         Its modes and order, None if stable.
     searched : tuple of float
         Speeds [rad/s] between which the tongue's borders were looked for.
-    deflection : xarray.DataArray or None
-        Of a disk: critical motion over ``radius`` [m] and ``angle`` [rad], complex, largest modulus 1.
+    deflections : dict of str to xarray.DataArray
+        Of each part whose coordinates are shapes of a surface: critical motion over ``radius`` [m] and ``angle``
+        [rad], complex, the largest modulus of all parts 1.
     history : xarray.DataArray or None
-        Of anything else: critical motion over ``time`` [periods] and ``coordinate``, the largest 1.
+        Of all other coordinates: critical motion over ``time`` [periods] and ``coordinate``, the largest 1.
     """
 
     speed: float
@@ -65,7 +67,7 @@ class CellDetail:
     tongue: Tongue | None
     label: str | None
     searched: tuple[float, float]
-    deflection: xr.DataArray | None
+    deflections: Mapping[str, xr.DataArray]
     history: xr.DataArray | None
 
 
@@ -99,22 +101,24 @@ def cell_detail(model: Model, speed: float) -> CellDetail:
     if radius - 1.0 > UNSTABLE:
         tongue, searched = _tongue_at(model, speed)
     label = tongue.label if tongue else combination(system).label if radius - 1.0 > UNSTABLE else None
-    deflection = history = None
-    if isinstance(model, Transverse):
-        deflection, motion = _deflection(model, motion)
-    else:
-        scale = motion[np.abs(motion).argmax()]
-        motion, history = motion / scale, _history(system, vectors[:, 0] / scale, complex(values[0]))
+    deflections = _deflections(model.coordinates, motion)
+    shown = [part.values for part in deflections.values()] or [motion]
+    largest = max((complex(part.flat[np.abs(part).argmax()]) for part in shown), key=abs)
+    bodies = [k for k, coordinate in enumerate(model.coordinates) if coordinate.surface is None]
+    history = None
+    if bodies:
+        names = [model.coordinates[k].name for k in bodies]
+        history = _history(system, vectors[:, 0] / largest, complex(values[0]), bodies, names)
     return CellDetail(
         speed=speed,
         growth_rate=math.log(radius) / system.period,
         multipliers=values,
         critical=complex(values[0]),
-        motion=motion,
+        motion=motion / largest,
         tongue=tongue,
         label=label,
         searched=searched,
-        deflection=deflection,
+        deflections={name: _labelled(part, largest) for name, part in deflections.items()},
         history=history,
     )
 
@@ -135,29 +139,47 @@ def _tongue_at(model: Model, speed: float) -> tuple[Tongue | None, tuple[float, 
     return tongue, window
 
 
-def _deflection(model: Transverse, motion: ComplexArray) -> tuple[xr.DataArray, ComplexArray]:
-    """Deflection of the disk in a motion, and the motion to its scale and phase."""
-    body = model.body
-    radius = np.linspace(body.bore_radius, body.outer_radius, _RADII)
-    angle = np.linspace(0.0, 2.0 * np.pi, _ANGLES)
-    shape = shape_vector(body, radius[:, np.newaxis], angle)
-    values = shape @ motion
-    largest = values.flat[np.abs(values).argmax()]
-    data = xr.DataArray(
-        values / largest,
+class _Deflection(NamedTuple):
+    """Deflection of one part, (radii, angles), complex."""
+
+    radius: FloatArray
+    angle: FloatArray
+    values: ComplexArray
+
+
+def _deflections(coordinates: Sequence[Coordinate], motion: ComplexArray) -> dict[str, _Deflection]:
+    """Deflection in a motion of every part that has surfaces."""
+    parts: dict[str, _Deflection] = {}
+    for coordinate, amplitude in zip(coordinates, motion, strict=True):
+        surface = coordinate.surface
+        if surface is None:
+            continue
+        if coordinate.part not in parts:
+            radius = np.linspace(surface.inner_radius, surface.outer_radius, _RADII)
+            angle = np.linspace(0.0, 2.0 * np.pi, _ANGLES)
+            parts[coordinate.part] = _Deflection(radius, angle, np.zeros((_RADII, _ANGLES), dtype=complex))
+        part = parts[coordinate.part]
+        part.values[:] += amplitude * surface.deflection(part.radius[:, np.newaxis], part.angle)
+    return parts
+
+
+def _labelled(part: _Deflection, largest: complex) -> xr.DataArray:
+    return xr.DataArray(
+        part.values / largest,
         dims=("radius", "angle"),
         coords={
-            "radius": ("radius", radius, {"units": "m"}),
-            "angle": ("angle", angle, {"units": "rad"}),
+            "radius": ("radius", part.radius, {"units": "m"}),
+            "angle": ("angle", part.angle, {"units": "rad"}),
         },
         name="deflection",
         attrs={"units": "1", "long_name": "deflection over its largest amplitude"},
     )
-    return data, motion / largest
 
 
-def _history(system: PeriodicSystem, state: ComplexArray, critical: complex) -> xr.DataArray:
-    """Displacements of the critical motion over some periods: integrated over one, λ times that in the next."""
+def _history(
+    system: PeriodicSystem, state: ComplexArray, critical: complex, chosen: list[int], names: list[str]
+) -> xr.DataArray:
+    """Chosen displacements of the critical motion over some periods: integrated over one, λ times that in the next."""
     kicks = dict(system.velocity_kicks())
     edges = np.append(system.breakpoints, 1.0)
     instants, motion = [], []
@@ -175,15 +197,18 @@ def _history(system: PeriodicSystem, state: ComplexArray, critical: complex) -> 
             atol=1e-10,
         )
         instants.append(piece.t)
-        motion.append(piece.y[: system.size].T)
+        motion.append(piece.y[chosen].T)
         state = piece.y[:, -1]
     once, time = np.concatenate(motion), np.concatenate(instants)
     periods = np.arange(_PERIODS)
-    whole = (critical ** periods[:, np.newaxis, np.newaxis] * once).reshape(-1, system.size).real
+    whole = (critical ** periods[:, np.newaxis, np.newaxis] * once).reshape(-1, len(chosen)).real
     return xr.DataArray(
         whole / np.abs(whole).max(),
         dims=("time", "coordinate"),
-        coords={"time": ("time", (periods[:, np.newaxis] + time).ravel(), {"units": "periods"})},
+        coords={
+            "time": ("time", (periods[:, np.newaxis] + time).ravel(), {"units": "periods"}),
+            "coordinate": names,
+        },
         name="history",
         attrs={"units": "1", "long_name": "displacement over the largest one"},
     )

@@ -42,39 +42,45 @@ RING: dict[str, Any] = {
 
 
 @styled
-def cell_figure(detail: CellDetail, coordinates: tuple[str, ...] = ()) -> Figure:
+def cell_figure(detail: CellDetail) -> Figure:
     """Multipliers in the complex plane and the critical motion.
 
     Parameters
     ----------
     detail : CellDetail
-        From :func:`facegear.drives.explore.cell_detail`.
-    coordinates : tuple of str, optional
-        Names of the coordinates, for what is no disk.
+        From :func:`facegear.drives.cell.cell_detail`.
     """
-    figure = Figure(figsize=(WIDTH, 2.9), layout="constrained")
-    draw_detail(figure, detail, coordinates)
+    figure = Figure(figsize=(WIDTH, 2.9 * rows(detail)), layout="constrained")
+    draw_detail(figure, detail)
     return figure
 
 
-def draw_detail(figure: Any, detail: CellDetail, coordinates: tuple[str, ...]) -> None:
+def rows(detail: CellDetail) -> int:
+    """Rows of panels that a cell takes: one a part with a deflection, one more for other coordinates beside such."""
+    return max(1, len(detail.deflections) + bool(detail.deflections and detail.history is not None))
+
+
+def draw_detail(figure: Any, detail: CellDetail) -> None:
     """Fill a figure, or a part of one, with multipliers and critical motion."""
-    if detail.deflection is None:
-        axes = figure.subplots(1, 2, width_ratios=(1.0, 1.6))
-        _draw_multipliers(axes[0], detail)
+    grid = figure.add_gridspec(rows(detail), 12)
+    if not detail.deflections:
+        _draw_multipliers(figure.add_subplot(grid[0, :5]), detail)
         assert detail.history is not None
-        _draw_history(axes[1], detail.history, coordinates)
+        _draw_history(figure.add_subplot(grid[0, 5:]), detail.history)
         return
-    axes = figure.subplots(1, 3)
-    _draw_multipliers(axes[0], detail)
-    for ax, part, title in zip(
-        axes[1:],
-        (detail.deflection.real, detail.deflection.imag),
-        ("critical motion, real part", "imaginary part"),
-        strict=True,
-    ):
-        _draw_disk(ax, part)
-        ax.set_title(title, fontsize=10)
+    _draw_multipliers(figure.add_subplot(grid[0, :4]), detail)
+    for row, (part, deflection) in enumerate(detail.deflections.items()):
+        # One part needs no name.
+        name = "critical motion" if len(detail.deflections) == 1 else part
+        for columns, values, title in (
+            (slice(4, 8), deflection.real, f"{name}, real part"),
+            (slice(8, 12), deflection.imag, "imaginary part"),
+        ):
+            ax = figure.add_subplot(grid[row, columns])
+            _draw_disk(ax, values)
+            ax.set_title(title, fontsize=10)
+    if detail.history is not None:
+        _draw_history(figure.add_subplot(grid[-1, :]), detail.history)
 
 
 def _draw_multipliers(ax: Axes, detail: CellDetail) -> None:
@@ -109,12 +115,13 @@ def _draw_disk(ax: Axes, deflection: xr.DataArray) -> None:
     ax.axis("off")
 
 
-def _draw_history(ax: Axes, history: xr.DataArray, coordinates: tuple[str, ...]) -> None:
-    """Displacements over time."""
-    lines = zip((BLUE, VERMILION, GREEN, PURPLE), ("-", "--", "-.", ":"), strict=True)
-    names = coordinates or [f"$q_{k + 1}$" for k in range(history.sizes["coordinate"])]
-    for number, (name, (colour, style)) in enumerate(zip(names, lines, strict=False)):
-        ax.plot(history["time"], history[:, number], style, color=colour, label=name)
+def _draw_history(ax: Axes, history: xr.DataArray) -> None:
+    """Displacements over time, of the coordinates that move most."""
+    lines = ((BLUE, "-"), (VERMILION, "--"), (GREEN, "-."), (PURPLE, ":"))
+    order = np.argsort(-np.abs(history.values).max(axis=0), kind="stable")[: len(lines)]
+    names = history["coordinate"].values
+    for number, (colour, style) in zip(np.sort(order), lines, strict=False):
+        ax.plot(history["time"], history[:, number], style, color=colour, label=str(names[number]))
     ax.set(xlabel="time [periods]", ylabel="displacement", ylim=(-1.1, 1.1))
     ax.set_title("critical motion", fontsize=10)
     if len(names) > 1:

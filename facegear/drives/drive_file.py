@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 from facegear.design.body import Requirements
 from facegear.drives.drive_keys import LONGEST_TEXT, MOST_PINIONS, NAME, SECTIONS, WIDEST_SPEED_RATIO, Key
 from facegear.geometry.drive import Drive
+from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
 from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
 from facegear.mechanics.torsional import Gearbox, Torsional
@@ -299,7 +300,9 @@ def _built(found: _Found) -> DriveFile:
     angles, clock = pinions.pop("angles"), pinions.pop("contact_ratio")
     ratio = drive.geometric_contact_ratio if clock == "geometric" else None
     load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
-    transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact_ratio=ratio))
+    transverse = _by_model(
+        found, "pinions", lambda: Transverse(body, load, angles, Contact(contact_ratio=ratio))
+    )
     requirements = _requirements(found, body)
     torsional = None
     if (gearbox := values["gearbox"]) is not None:
@@ -313,7 +316,8 @@ def _torsional(drive: Drive, gearbox: dict[str, Any], contact_ratio: float | Non
     for part in ("mesh", "input", "output"):
         # The file gives damping as a time.
         values[f"{part}_damping"] *= values[f"{part}_stiffness"]
-    return Torsional(Gearbox(drive, contact_ratio=contact_ratio, **values), arm=arm)
+    contact = replace(SKEW_LINE, contact_ratio=contact_ratio)
+    return Torsional(Gearbox(drive, **values), contact, arm)
 
 
 def _check_bore(drive: Drive, bore_radius: float) -> None:

@@ -139,8 +139,6 @@ class Study:
         Name of the quantity on the vertical axis at first.
     speed : Quantity
         The highest speed on the horizontal axis; its label is that of the axis.
-    coordinates : tuple of str
-        Names of the model's coordinates, for models other than a disk.
     columns, rows : int
         Speeds and values of the map, at least 2.
     """
@@ -149,7 +147,6 @@ class Study:
     build: Callable[[Settings], Model]
     vertical: str
     speed: Quantity
-    coordinates: tuple[str, ...] = ()
     columns: int = READING_COLUMNS
     rows: int = READING_ROWS
 

@@ -19,7 +19,7 @@ from matplotlib.colors import Normalize, to_hex
 from matplotlib.figure import Figure
 
 from facegear.drives.cell import cell_detail
-from facegear.drives.cell_figure import RING, cell_figure, described, draw_detail
+from facegear.drives.cell_figure import RING, cell_figure, described, draw_detail, rows
 from facegear.drives.explore import Choice, Control, Quantity, Study, View, map_stages, reading_map, unstable
 from facegear.floquet.models import Model, replace_parameter
 from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, WIDTH, styled
@@ -38,8 +38,9 @@ def picture(view: View) -> Figure:
     view : View
         From :func:`facegear.drives.explore.view`.
     """
-    figure = Figure(figsize=(WIDTH, 7.0), layout="constrained")
-    parts: Any = figure.subfigures(2, 1, height_ratios=(1.25, 1.0))
+    lower = 3.1 * rows(view.detail)
+    figure = Figure(figsize=(WIDTH, 3.9 + lower), layout="constrained")
+    parts: Any = figure.subfigures(2, 1, height_ratios=(3.9, lower))
     above, below = parts
     ax = above.subplots()
     speed, vertical = view.study.speed, view.vertical
@@ -57,7 +58,7 @@ def picture(view: View) -> Figure:
     ax.set(xlabel=speed.label, ylabel=vertical.label)
     ax.grid(False)
     figure.colorbar(mesh, ax=ax, label="growth rate [1/s]")
-    draw_detail(below, view.detail, view.study.coordinates)
+    draw_detail(below, view.detail)
     return figure
 
 
@@ -235,7 +236,7 @@ class MapExplorer:
         self.report.value = (
             f'<p class="facegear-report" style="line-height:1.4;white-space:normal">{escape(words)}</p>'
         )
-        drawn = _png(cell_figure(detail, self.study.coordinates))
+        drawn = _png(cell_figure(detail))
         alt = "Multipliers in the complex plane and the critical motion. " + words
         self.picture.value = (
             f'<img class="facegear-cell" src="data:image/png;base64,{drawn}" alt="{escape(alt)}" '

@@ -29,7 +29,7 @@ from facegear.maps.parallel import in_processes
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.disk import reference_stiffness
-from facegear.mechanics.edge_stiffness import Following, complete_harmonics, driving_force
+from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
 from facegear.mechanics.transverse import Transverse, nominal_pinion_mass
 from facegear.support.labelled import text, variable
@@ -63,7 +63,7 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
         In mm, degrees, kg and N/m.
     """
     drive, body, model = file.drive, file.transverse.body, file.transverse
-    force = driving_force(body, file.requirements.power, file.requirements.pinion_speed)
+    force = DrivingForce(file.requirements.power, file.requirements.pinion_speed).newtons(drive)
     return (
         Row("gear ratio N2/N1", drive.gear_ratio, "1"),
         Row("pitch radius of the pinion", 1e3 * drive.pitch_radius, "mm"),
@@ -122,8 +122,7 @@ def flutter(body_model: Transverse, duty: Requirements) -> tuple[Row, ...]:
         of a pinion [-]. Without viscous damping of the disk any power flutters, and the critical one is 0.
     """
     body = body_model.body
-    sense = -1.0 if body_model.travel == "with_disk" else 1.0
-    angles = [sense * angle for angle in body_model.pinion_angles]
+    angles = [body_model.contact.sense * angle for angle in body_model.pinion_angles]
     damped = body.material.viscous_loss_factor > 0.0
 
     def smallest(following: Following) -> float:
@@ -152,8 +151,8 @@ def flutter(body_model: Transverse, duty: Requirements) -> tuple[Row, ...]:
 def describe(file: DriveFile) -> str:
     """Parameters of a drive file as text, for the provenance of arrays."""
     # The contact ratio in use besides the field: None there is that of the drive.
-    ratio = file.transverse.mesh_contact_ratio
-    return f"{file.name}: {file.transverse}, {file.torsional}, mesh_contact_ratio = {ratio:.10g}"
+    ratio = file.transverse.contact_ratio
+    return f"{file.name}: {file.transverse}, {file.torsional}, contact_ratio = {ratio:.10g}"
 
 
 # --- tongues and what lies between them -------------------------------------------------------------------------

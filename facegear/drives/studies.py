@@ -6,13 +6,15 @@ import math
 from dataclasses import dataclass
 
 from facegear.drives.explore import Choice, Quantity, Settings, Study
-from facegear.floquet.models import Model, replace_parameter
+from facegear.floquet.models import Coordinate, Model, replace_parameter, value_of
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.classical import mathieu, meissner
-from facegear.mechanics.gearboxes import ProportionalGearbox
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
+from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, keep, nonnegative, rad_per_s, within
 
@@ -54,16 +56,16 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
     degrees = [math.degrees(angle) % 360.0 for angle in start.pinion_angles]
     degrees += [_SECOND, _THIRD][len(degrees) - 1 :]
     horsepower = 0.0
-    if start.power is not None and start.power_speed is not None:
+    if start.force is not None:
         # The power control holds at the highest speed: the same force.
         full = rad_per_s(highest_speed_rpm) / drive.speed_ratio
-        horsepower = start.power / start.power_speed * full / WATT_PER_HORSEPOWER
+        horsepower = start.force.power / start.force.pinion_speed * full / WATT_PER_HORSEPOWER
     clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
-    ratio = next((name for name, value in clocks.items() if value == start.mesh_contact_ratio), None)
+    ratio = next((name for name, value in clocks.items() if value == start.contact_ratio), None)
     if ratio is None:
         raise ValueError(
             f"contact_ratio of the model must be {clocks[TREGOLD]:.6g} (Tregold) or {clocks[TRUE_SWEEP]:.6g} (true "
-            f"sweep) for these teeth, got {start.mesh_contact_ratio!r}"
+            f"sweep) for these teeth, got {start.contact_ratio!r}"
         )
     controls = (
         Quantity("pinion_teeth", "teeth of the pinion", 12, 60, drive.pinion_teeth, 1, whole=True),
@@ -137,9 +139,10 @@ def _drive_model(settings: Settings) -> Model:
         body,
         MeshLoad(settings["stiffness"], settings["damping"], settings["mass"]),
         pinion_angles=angles,
-        contact_ratio=drive.geometric_contact_ratio if settings["contact_ratio"] == TRUE_SWEEP else None,
-        power=settings["power"],
-        power_speed=settings["highest_speed"] / drive.speed_ratio,
+        contact=Contact(
+            contact_ratio=drive.geometric_contact_ratio if settings["contact_ratio"] == TRUE_SWEEP else None
+        ),
+        force=DrivingForce(settings["power"], settings["highest_speed"] / drive.speed_ratio),
     )
 
 
@@ -169,6 +172,11 @@ class Oscillator:
             duty=None if self.duty is None else within("duty", self.duty, 0.001, 0.999),
         )
 
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Its one coordinate."""
+        return (Coordinate("q", ""),)
+
     def system(self, speed: float) -> PeriodicSystem:
         """Equation of motion at a parametric frequency [rad/s], the natural frequency being 1 rad/s."""
         if self.duty is None:
@@ -193,18 +201,24 @@ def oscillator_study() -> Study:
         duty = settings["duty"] if settings["wave"] == SQUARE else None
         return Oscillator(settings["depth"], settings["damping_ratio"], duty)
 
-    return Study(controls, build, "depth", speed, coordinates=("q",))
+    return Study(
+        controls,
+        build,
+        "depth",
+        speed,
+    )
 
 
 def gearbox_study(
-    model: ProportionalGearbox | None = None, highest_speed_rpm: float = gearboxes.HIGHEST_SPEED_RPM
+    model: Torsional | None = None, highest_speed_rpm: float = gearboxes.HIGHEST_SPEED_RPM
 ) -> Study:
     """Torsional vibration of the gearbox of table 7.1: inertias, shafts, mesh.
 
     Parameters
     ----------
-    model : ProportionalGearbox, optional
-        Where the controls stand at first; that of Fig. 7.12(a) if left out.
+    model : Torsional, optional
+        With a :class:`facegear.mechanics.gearboxes.ProportionalGearbox`, where the controls stand at first; that of
+        Fig. 7.12(a) if left out.
     highest_speed_rpm : float
         End of the speed axis [rpm of the face gear].
 
@@ -217,7 +231,7 @@ def gearbox_study(
     def quantity(
         name: str, label: str, lowest: float, highest: float, step: float, unit: float = 1.0
     ) -> Quantity:
-        value = getattr(start, name) / unit
+        value = value_of(start, name) / unit
         return Quantity(name, label, lowest, max(highest, value), value, step, unit, parameter=name)
 
     controls = (
@@ -244,5 +258,4 @@ def gearbox_study(
         build,
         "input_damping",
         _speed(highest_speed_rpm),
-        coordinates=("pinion", "face gear", "load"),
     )

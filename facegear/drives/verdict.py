@@ -20,7 +20,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.floquet.modal import modal_expansion
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import Tongue
-from facegear.mechanics.edge_stiffness import Following, complete_harmonics
+from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import rpm
 
@@ -71,17 +71,14 @@ def driven(file: DriveFile, following: Following, contact_ratio: float) -> Trans
     duty, model = file.requirements, file.transverse
     return replace(
         model,
-        contact_ratio=contact_ratio,
-        power=duty.power,
-        power_speed=duty.pinion_speed,
-        following=following,
-        stress_harmonics=complete_harmonics(model.body),
+        contact=replace(model.contact, contact_ratio=contact_ratio),
+        force=DrivingForce(duty.power, duty.pinion_speed, following, complete_harmonics(model.body)),
     )
 
 
 def clocks(file: DriveFile) -> dict[str, float]:
     """Names and values of both contact ratios, that of the file first."""
-    drive, own = file.drive, file.transverse.mesh_contact_ratio
+    drive, own = file.drive, file.transverse.contact_ratio
     both = {"Tregold": drive.contact_ratio, "true sweep": drive.geometric_contact_ratio}
     return dict(sorted(both.items(), key=lambda item: abs(item[1] - own)))
 

@@ -1,8 +1,9 @@
-"""What maps need of a model: a system at each speed, and a copy with one parameter replaced.
+"""What maps need of a model: a system at each speed, names of its coordinates, and a copy with one parameter replaced.
 
-A model is a frozen dataclass with a method ``system(speed)``. Its parameters are its own numbers and those of
-the dataclasses it holds: ``stiffness`` of a transverse model is that of its mesh load, ``thickness_ratio`` that
-of its body.
+A model is a frozen dataclass with a method ``system(speed)`` and a property ``coordinates``. Its parameters are its
+own numbers and those of the dataclasses it holds: ``stiffness`` of a transverse model is that of its mesh load,
+``thickness_ratio`` that of its body. Whatever is such a dataclass goes through maps, tongues, labels, cell details,
+sensitivities, reports and explorers; none of them asks for its class.
 """
 
 from __future__ import annotations
@@ -13,11 +14,59 @@ from functools import cache
 from numbers import Real
 from typing import Any, Protocol, TypeVar, get_args, get_type_hints
 
+from numpy.typing import ArrayLike
+
 from facegear.floquet.periodic import PeriodicSystem, without_rigid_motion
+from facegear.support.types import FloatArray
+
+
+class Surface(Protocol):
+    """One shape of a disk, for drawing what a coordinate does to it."""
+
+    @property
+    def inner_radius(self) -> float:
+        """Radius of the inner edge [m]."""
+        ...
+
+    @property
+    def outer_radius(self) -> float:
+        """Radius of the outer edge [m]."""
+        ...
+
+    def deflection(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """Deflection at r [m] and θ [rad], broadcast against each other, for a unit of the coordinate."""
+        ...
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One generalised coordinate of a model: what it is called, and where it is.
+
+    Attributes
+    ----------
+    name : str
+        Such as "pinion", or "1 circle, 2 diameters, cos".
+    unit : str
+        Of the coordinate, such as "rad".
+    part : str
+        What moves, such as "face gear"; coordinates of the same part with surfaces make one deflection.
+    surface : Surface, optional
+        The shape that a unit of the coordinate gives a disk; None for the motion of a rigid body, drawn over time.
+    """
+
+    name: str
+    unit: str
+    part: str = ""
+    surface: Surface | None = None
 
 
 class Model(Protocol):
-    """Anything with a periodic system at each speed [rad/s]."""
+    """Anything with a periodic system at each speed [rad/s] and names for its coordinates."""
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Generalised coordinates, in the order of all matrices and shape vectors."""
+        ...
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed [rad/s]."""
@@ -40,6 +89,12 @@ class WithoutRigidMotion:
     """
 
     model: Model
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """One for each motion that is left, by number: they mix the coordinates of the model."""
+        # Rigid-body motions meet no spring at any speed.
+        return tuple(Coordinate(f"motion {k + 1}", "") for k in range(self.system(1.0).size))
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of what is left, at a constant speed [rad/s]."""
@@ -64,9 +119,9 @@ def parameter_names(model: object) -> tuple[str, ...]:
     while level:
         below: list[tuple[str, Any]] = []
         for prefix, part in level:
-            for field in dataclasses.fields(part) if _is_dataclass(part) else ():
+            for field in dataclasses.fields(part) if is_part(part) else ():
                 value = getattr(part, field.name)
-                if _is_dataclass(value):
+                if is_part(value):
                     below.append((f"{prefix}{field.name}.", value))
                 elif field.init and (_is_number(value) or _takes_number(part, field.name)):
                     found.append(prefix + field.name)
@@ -91,7 +146,7 @@ def parameter_path(model: object, name: str) -> tuple[str, ...]:
     ValueError
         If there is no such parameter, naming those that exist, or if several are equally near.
     """
-    if not _is_dataclass(model):
+    if not is_part(model):
         raise TypeError(f"model must be a dataclass with a method system(speed), got {type(model).__name__}")
     names = parameter_names(model)
     if name in names:
@@ -153,7 +208,7 @@ def is_whole_number(model: object, name: str) -> bool:
     return bool(_declared(part).get(last) is int)
 
 
-def replace_at(part: Any, path: tuple[str, ...], value: float) -> Any:
+def replace_at(part: Any, path: tuple[str, ...], value: Any) -> Any:
     """Return a dataclass with the parameter at the end of a path of fields replaced.
 
     Parameters
@@ -172,7 +227,8 @@ def replace_at(part: Any, path: tuple[str, ...], value: float) -> Any:
     return dataclasses.replace(part, **{name: value})
 
 
-def _is_dataclass(value: Any) -> bool:
+def is_part(value: Any) -> bool:
+    """Whether a value is a dataclass whose fields are parameters of the model that holds it."""
     return dataclasses.is_dataclass(value) and not isinstance(value, type)
 
 

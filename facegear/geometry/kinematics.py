@@ -17,7 +17,7 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Generic, NamedTuple, TypeVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,7 +39,8 @@ _CUT_TOLERANCE = 1e-11
 class PairStates(NamedTuple):
     """Tooth pairs at instants of shape S; row j is the pair that entered j mesh periods before frac(x) = 0.
 
-    Where a pair is out of contact its radius, angle and length are 0.
+    Where a pair is out of contact its radius, angle and length are 0, and all angles and lengths of a path that has
+    none (:class:`SkewLine`).
 
     Attributes
     ----------
@@ -71,23 +72,6 @@ class Centroid(NamedTuple):
 
     radius: FloatArray
     angle: FloatArray
-
-
-class SkewStates(NamedTuple):
-    """Tooth pairs on the skew line (3-22) at instants of shape S.
-
-    Attributes
-    ----------
-    in_contact : ndarray of bool, shape (P,) + S
-    radius : ndarray, shape (P,) + S
-        r_j [m]; 0 out of contact.
-    slope : ndarray, shape (P,) + S
-        dr_j/dx [m per mesh period]; 0 out of contact. Divide by T0 for the derivative to time.
-    """
-
-    in_contact: NDArray[np.bool_]
-    radius: FloatArray
-    slope: FloatArray
 
 
 def checked_contact_ratio(drive: Drive, contact_ratio: float | None) -> float:
@@ -129,11 +113,8 @@ def _ages(x: ArrayLike, pairs: int) -> FloatArray:
     return np.stack([start + j for j in range(pairs)])
 
 
-States = TypeVar("States")
-
-
 @dataclass(frozen=True)
-class _TimedPairs(ABC, Generic[States]):
+class TimedPairs(ABC):
     """Tooth pairs on a clock: which are in mesh when, for any law of their positions.
 
     Parameters
@@ -151,6 +132,9 @@ class _TimedPairs(ABC, Generic[States]):
     drive: Drive
     contact_ratio: float = field(default=None)  # type: ignore[assignment]
 
+    has_lengths: ClassVar[bool] = False
+    """Whether contact is along lines, whose lengths may weight their midpoints."""
+
     def __post_init__(self) -> None:
         parameters.keep(self, contact_ratio=checked_contact_ratio(self.drive, self.contact_ratio))
 
@@ -164,12 +148,12 @@ class _TimedPairs(ABC, Generic[States]):
         """Fractions of T0 in [0, 1), ascending from 0, where a pair enters (0) or leaves (cr − ⌊cr⌋)."""
         return _merged([0.0, self.contact_ratio])
 
-    def pair_states(self, x: ArrayLike) -> States:
+    def pair_states(self, x: ArrayLike) -> PairStates:
         """Contact points of all pairs at times x [mesh periods], any real numbers of shape S; period 1."""
         ages = _ages(x, self.pairs)
         return self._states(ages, ages <= self.contact_ratio)
 
-    def pair_states_on_piece(self, index: int, x: ArrayLike) -> States:
+    def pair_states_on_piece(self, index: int, x: ArrayLike) -> PairStates:
         """Contact points of all pairs on one smooth piece, both ends included, as limits from inside.
 
         Parameters
@@ -181,7 +165,7 @@ class _TimedPairs(ABC, Generic[States]):
 
         Returns
         -------
-        PairStates or SkewStates
+        PairStates
 
         Raises
         ------
@@ -206,12 +190,33 @@ class _TimedPairs(ABC, Generic[States]):
         return self._states(ages, np.broadcast_to(in_mesh.reshape(-1, *([1] * local.ndim)), ages.shape))
 
     @abstractmethod
-    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> States:
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
         """Positions of pairs that have been in mesh for so many mesh periods, zero where not in mesh."""
+
+    @property
+    def fit_tolerances(self) -> FloatArray:
+        """Relative errors that a fit of the positions may have, shape (pieces,) [-]."""
+        return np.full(len(self.breakpoints), _TOLERANCE)
+
+    def require_followable(self, name: str, mean: bool) -> None:  # noqa: B027 (nothing to refuse is an answer)
+        """Refuse a contact whose speed has no limit, for what has to follow it.
+
+        Parameters
+        ----------
+        name : str
+            What has to follow it, for the message.
+        mean : bool
+            Whether it follows a mean point of all pairs in mesh, or each pair.
+
+        Raises
+        ------
+        ValueError
+            Saying why.
+        """
 
 
 @dataclass(frozen=True)
-class ContactPath(_TimedPairs[PairStates]):
+class ContactPath(TimedPairs):
     """Path of the true contact points, the midpoints of the contact lines by arc length.
 
     Parameters
@@ -225,6 +230,8 @@ class ContactPath(_TimedPairs[PairStates]):
     TypeError, ValueError
         `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
     """
+
+    has_lengths: ClassVar[bool] = True
 
     @property
     def angular_travel(self) -> float:
@@ -318,6 +325,12 @@ class ContactPath(_TimedPairs[PairStates]):
                 f"contact_ratio must be at least {1.0 + _SHORT:g} for {name}, which follows the contact centroid back "
                 f"from exit to entry within contact_ratio - 1 mesh periods, got {self.contact_ratio!r}"
             )
+
+    def require_followable(self, name: str, mean: bool) -> None:
+        """As :meth:`TimedPairs.require_followable`: too few teeth, or a mean point that springs back."""
+        self.require_finite_speed(name)
+        if mean:
+            self.require_slow_centroid(name)
 
     @property
     def fit_tolerances(self) -> FloatArray:
@@ -434,8 +447,42 @@ def _weighted(states: PairStates) -> Centroid:
 
 
 @dataclass(frozen=True)
-class SkewLine(_TimedPairs[SkewStates]):
-    """Contact points on the straight line from R2 to R1 in time, pair by pair (3-22).
+class CentroidPath(ContactPath):
+    """Path on which every tooth pair in mesh is taken to be at the contact centroid (3-21) of all of them.
+
+    Parameters
+    ----------
+    drive : Drive
+    contact_ratio : float, optional
+        As for :class:`ContactPath`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :class:`ContactPath`.
+    """
+
+    def require_followable(self, name: str, mean: bool) -> None:
+        """As :meth:`ContactPath.require_followable` for a mean point, which all pairs follow here."""
+        super().require_followable(name, True)
+
+    def pair_states(self, x: ArrayLike) -> PairStates:
+        """As :meth:`ContactPath.pair_states`, all pairs at the centroid."""
+        return _gathered(super().pair_states(x))
+
+    def pair_states_on_piece(self, index: int, x: ArrayLike) -> PairStates:
+        """As :meth:`ContactPath.pair_states_on_piece`, all pairs at the centroid."""
+        return _gathered(super().pair_states_on_piece(index, x))
+
+
+def _gathered(states: PairStates) -> PairStates:
+    centroid, there = _weighted(states), states.in_contact
+    return PairStates(there, centroid.radius * there, centroid.angle * there, states.length)
+
+
+@dataclass(frozen=True)
+class SkewLine(TimedPairs):
+    """Contact points on the straight line from R2 to R1 in time, pair by pair, without angle or length (3-22).
 
     Parameters
     ----------
@@ -449,11 +496,14 @@ class SkewLine(_TimedPairs[SkewStates]):
         `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
     """
 
-    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> SkewStates:
-        travel = self.drive.inner_radius - self.drive.outer_radius
-        radius = np.where(in_mesh, self.drive.outer_radius + travel * ages / self.contact_ratio, 0.0)
-        slope = np.where(in_mesh, travel / self.contact_ratio, 0.0)
-        return SkewStates(np.asarray(in_mesh), radius, slope)
+    @property
+    def slope(self) -> float:
+        """dr_j/dx of a pair in contact [m per mesh period]; over T0 its derivative to time."""
+        return (self.drive.inner_radius - self.drive.outer_radius) / self.contact_ratio
+
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
+        radius = np.where(in_mesh, self.drive.outer_radius + self.slope * ages, 0.0)
+        return PairStates(np.asarray(in_mesh), radius, np.zeros(ages.shape), np.zeros(ages.shape))
 
 
 def mesh_period(drive: Drive, gear_speed: float) -> float:

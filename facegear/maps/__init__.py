@@ -2,5 +2,5 @@
 
 `stability_map` and `tracing` (which stands on `scanning`), values of a parameter at which a tongue closes (`closing`)
 or ends in a tip (`lobes`), derivatives (`sensitivity`), work shared out over processes and kept on disk (`parallel`).
-Public: `stability_map`, `tongues`, `search_seconds`.
+Public: `stability_map`, `tongues`.
 """

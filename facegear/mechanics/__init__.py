@@ -1,7 +1,8 @@
 """Mechanical models that become a `PeriodicSystem` at each speed.
 
-The spinning disk under its pinions (`plate`, `mode_shapes`, `disk`, `transverse`, `rotation`; chapters 4 and 5) and
-under a force at its rim (`inplane`, `edge_stiffness`; 6), the gearbox in torsion (`torsional`; 7), the classical
-equations (`classical`; 2), the dissertation's own drives (`cases`, `gearboxes`).
-Public: `Body`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`.
+Where teeth press and when (`contact`), the spinning disk under its pinions (`plate`, `mode_shapes`, `disk`,
+`transverse`, `rotation`; chapters 4 and 5) and under a force at its rim (`inplane`, `edge_stiffness`; 6), the gearbox
+in torsion (`torsional`; 7), the classical equations (`classical`; 2), the dissertation's own drives (`cases`,
+`gearboxes`).
+Public: `Body`, `Contact`, `DrivingForce`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`.
 """

@@ -9,13 +9,15 @@ the equations are divided by 2πρh, as in (4-8), so that the mass matrix of the
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
+from facegear.floquet.models import Coordinate
 from facegear.mechanics.plate import Body, RadialModes, centrifugal_stiffness
 from facegear.support.parameters import finite_array, positive, rad_per_s
 from facegear.support.types import FloatArray
@@ -25,17 +27,41 @@ REFERENCE_SPEED = float(rad_per_s(1000.0))
 REFERENCE_SAMPLES = 101
 
 
-class Coordinate(NamedTuple):
-    """One generalised coordinate of the disk."""
+@dataclass(frozen=True)
+class DiskMode:
+    """One real mode of the disk, the shape of a generalised coordinate.
 
+    Attributes
+    ----------
+    body : Body
+    nodal_circles, nodal_diameters : int
+        m and n.
+    wave : {"cos", "sin"}
+        cos nθ or sin nθ.
+    """
+
+    body: Body
     nodal_circles: int
     nodal_diameters: int
-    wave: str
-    """"cos" or "sin"."""
+    wave: Literal["cos", "sin"]
+
+    @property
+    def inner_radius(self) -> float:
+        """Radius of the bore [m]."""
+        return self.body.bore_radius
+
+    @property
+    def outer_radius(self) -> float:
+        """Radius of the rim [m]."""
+        return self.body.outer_radius
+
+    def deflection(self, radius: ArrayLike, angle: ArrayLike) -> FloatArray:
+        """Component of the shape vector (:func:`shape_vector`) that belongs to this mode [1/m]."""
+        return np.asarray(shape_vector(self.body, radius, angle)[..., disk_modes(self.body).index(self)])
 
 
-def coordinates(body: Body) -> tuple[Coordinate, ...]:
-    """Generalised coordinates of the disk, in the order of all matrices and shape vectors.
+def disk_modes(body: Body) -> tuple[DiskMode, ...]:
+    """Modes of the disk, in the order of all matrices and shape vectors.
 
     Parameters
     ----------
@@ -43,14 +69,41 @@ def coordinates(body: Body) -> tuple[Coordinate, ...]:
 
     Returns
     -------
-    tuple of Coordinate, length (M + 1)(2N + 1)
+    tuple of DiskMode, length (M + 1)(2N + 1)
         By nodal diameters, cosine before sine, then by nodal circles.
     """
+    waves: tuple[Literal["cos", "sin"], ...] = ("cos", "sin")
     return tuple(
-        Coordinate(m, n, wave)
+        DiskMode(body, m, n, wave)
         for n in range(body.nodal_diameters + 1)
-        for wave in (("cos", "sin") if n else ("cos",))
+        for wave in (waves if n else waves[:1])
         for m in range(body.nodal_circles + 1)
+    )
+
+
+def disk_coordinates(body: Body, part: str = "face gear") -> tuple[Coordinate, ...]:
+    """Generalised coordinates of the disk, one for each of :func:`disk_modes`.
+
+    Parameters
+    ----------
+    body : Body
+    part : str
+        What the disk is called.
+
+    Returns
+    -------
+    tuple of Coordinate
+        In m²: shape vectors are in 1/m.
+
+    Examples
+    --------
+    >>> from facegear.geometry.drive import Drive
+    >>> disk_coordinates(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03))[2].name
+    'face gear (0, 1) cos'
+    """
+    return tuple(
+        Coordinate(f"{part} ({mode.nodal_circles}, {mode.nodal_diameters}) {mode.wave}", "m²", part, mode)
+        for mode in disk_modes(body)
     )
 
 

@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
 from facegear.floquet.series import ChebyshevSeries
+from facegear.geometry.drive import Drive
 from facegear.mechanics.disk import unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
 from facegear.mechanics.plate import Body, plate_quadrature
-from facegear.support.parameters import nonnegative, one_of, positive, within
+from facegear.support.parameters import (
+    designed,
+    integer_at_least,
+    keep,
+    nonnegative,
+    one_of,
+    positive,
+    within,
+)
 from facegear.support.types import FloatArray
 
 Following = Literal["follower", "dead"]
@@ -81,7 +90,7 @@ def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower
     -------
     ndarray, shape (n, n)
         K_f [1/s²], divided by 2πρh as all matrices of (4-8); coordinates as
-        :func:`facegear.mechanics.disk.coordinates`.
+        :func:`facegear.mechanics.disk.disk_modes`.
 
     Raises
     ------
@@ -205,21 +214,66 @@ def _stiffness_series(
     return ChebyshevSeries.sampled(sampled, 0.0, 1.0, _SERIES_DEGREE)
 
 
-def driving_force(body: Body, power: float, pinion_speed: float) -> float:
-    """Tangential force at the pinion's pitch circle, F_t = P/(Ω1 r_p) [N] (4-21).
+@dataclass(frozen=True)
+class DrivingForce:
+    """Tangential force at the rim with which each pinion drives the disk (4-21), the same at every speed.
 
     Parameters
     ----------
-    body : Body
     power : float
-        P [W], 0 or greater.
+        P [W] that each pinion brings in at its speed `pinion_speed`, 0 or greater.
     pinion_speed : float
-        Ω1 at that power [rad/s].
+        Ω1 at that power [rad/s], greater than 0.
+    following : {"follower", "dead"}
+        Whether the force stays tangent to the bent rim, as printed, or keeps its direction.
+    harmonics : int
+        Largest harmonic of the stress under the force. Default 5, as printed; 2N couples all modes
+        (:func:`complete_harmonics`).
 
     Raises
     ------
     TypeError, ValueError
-        If an argument is not a number in its range.
+        If an argument is of the wrong kind or outside its range.
+
+    Examples
+    --------
+    >>> from facegear.geometry.drive import Drive
+    >>> DrivingForce(power=447.42e3, pinion_speed=523.6).newtons(Drive(26, 130, 3.175e-3))
+    20703.0
     """
-    speed = positive("power_speed", pinion_speed, "rad/s")
-    return nonnegative("power", power, "W") / (speed * body.drive.pitch_radius)
+
+    power: float = field(metadata=designed("power of each pinion"))
+    pinion_speed: float
+    following: Following = "follower"
+    harmonics: int = 5
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            power=nonnegative("power", self.power, "W"),
+            pinion_speed=positive("pinion_speed", self.pinion_speed, "rad/s"),
+            harmonics=integer_at_least("harmonics", self.harmonics, 0),
+        )
+        one_of("following", self.following, ("follower", "dead"))
+
+    def newtons(self, drive: Drive) -> float:
+        """Force at the pinion's pitch circle, F_t = P/(Ω1 r_p) [N] (4-21)."""
+        return self.power / (self.pinion_speed * drive.pitch_radius)
+
+    def stiffness(self, body: Body, speed: float, angles: tuple[float, ...]) -> FloatArray:
+        """K_f of equal forces at several angles [1/s²].
+
+        Parameters
+        ----------
+        body : Body
+        speed : float
+            Ω2 [rad/s].
+        angles : tuple of float
+            Of the pinions, in the sense in which the disk turns [rad].
+
+        Returns
+        -------
+        ndarray, shape (n, n)
+        """
+        unit = unit_stiffness(body, speed, self.harmonics, self.following, angles)
+        return self.newtons(body.drive) * unit

@@ -8,15 +8,14 @@ shaft follows its stiffness where a figure sweeps that.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal
 
-from facegear.floquet.periodic import PeriodicSystem
 from facegear.geometry.drive import Drive
-from facegear.mechanics.torsional import Arm, Gearbox, Path, Torsional, cylinder_inertia, mesh_stiffness
-from facegear.support.parameters import STEEL, keep, nonnegative, positive
+from facegear.mechanics.torsional import Gearbox, Torsional, cylinder_inertia, mesh_stiffness
+from facegear.support.parameters import STEEL, designed, keep, nonnegative, positive
 
 DRIVE = Drive(31, 107, 25.4e-3 / 8)
 """Drive of table 7.1: 31 and 107 teeth, diametral pitch 8 per inch."""
@@ -42,7 +41,7 @@ LOAD_INERTIA_RATIO = 1.1 * GEAR_INERTIA_RATIO
 
 @dataclass(frozen=True)
 class ProportionalGearbox:
-    """Gearbox of table 7.1 in the ratios of the captions; a model with a system at each speed.
+    """Gearbox of table 7.1 in the ratios of the captions, for :class:`facegear.mechanics.torsional.Torsional`.
 
     Parameters
     ----------
@@ -54,10 +53,6 @@ class ProportionalGearbox:
         k1/k_m and k2/k_m [m²/rad], greater than 0.
     mesh_damping, input_damping, output_damping : float
         c_m/k_m, c1/k1, c2/k2 [s], 0 or greater.
-    arm, path
-        As for :class:`facegear.mechanics.torsional.Torsional`.
-    contact_ratio : float, optional
-        As for :class:`facegear.mechanics.torsional.Gearbox`.
 
     Raises
     ------
@@ -66,21 +61,18 @@ class ProportionalGearbox:
 
     Examples
     --------
-    >>> f"{FIGURES['7.12a'].model().gearbox.input_stiffness:.3g}"
+    >>> f"{FIGURES['7.12a'].gearbox.in_si.input_stiffness:.3g}"
     '1.42e+06'
     """
 
     correction_factor: float
-    gear_inertia: float
-    load_inertia: float
-    input_stiffness: float
-    output_stiffness: float
-    mesh_damping: float
-    input_damping: float
-    output_damping: float
-    arm: Arm = "printed"
-    path: Path = "skew_line"
-    contact_ratio: float | None = None
+    gear_inertia: float = field(metadata=designed("inertia of the face gear"))
+    load_inertia: float = field(metadata=designed("inertia of the load"))
+    input_stiffness: float = field(metadata=designed("input shaft stiffness"))
+    output_stiffness: float = field(metadata=designed("output shaft stiffness"))
+    mesh_damping: float = field(metadata=designed("mesh damping"))
+    input_damping: float = field(metadata=designed("input shaft damping"))
+    output_damping: float = field(metadata=designed("output shaft damping"))
 
     def __post_init__(self) -> None:
         keep(self, correction_factor=positive("correction_factor", self.correction_factor))
@@ -89,15 +81,10 @@ class ProportionalGearbox:
         for name in ("mesh_damping", "input_damping", "output_damping"):
             keep(self, **{name: nonnegative(name, getattr(self, name), "s")})
         # Everything else is checked by what it is turned into.
-        keep(self, contact_ratio=self.torsional.box.contact_ratio)
-
-    @property
-    def mesh_contact_ratio(self) -> float:
-        """Mesh periods that a tooth pair stays in mesh: `contact_ratio` if given, else Tregold's (3-23 to 3-26)."""
-        return self.gearbox.mesh_contact_ratio
+        _ = self.in_si
 
     @cached_property
-    def gearbox(self) -> Gearbox:
+    def in_si(self) -> Gearbox:
         """The same in SI units."""
         stiffness = mesh_stiffness(DRIVE, self.correction_factor)
         first, second = self.input_stiffness * stiffness, self.output_stiffness * stiffness
@@ -112,17 +99,7 @@ class ProportionalGearbox:
             input_damping=self.input_damping * first,
             output_stiffness=second,
             output_damping=self.output_damping * second,
-            contact_ratio=self.contact_ratio,
         )
-
-    @cached_property
-    def torsional(self) -> Torsional:
-        """Torsional model of the gearbox."""
-        return Torsional(self.gearbox, arm=self.arm, path=self.path)
-
-    def system(self, speed: float) -> PeriodicSystem:
-        """Equations of motion at a speed Ω2 of the face gear [rad/s]; as :meth:`Torsional.system`."""
-        return self.torsional.system(speed)
 
 
 @dataclass(frozen=True)
@@ -131,10 +108,10 @@ class TorsionalFigure:
 
     Attributes
     ----------
-    base : ProportionalGearbox
+    gearbox : ProportionalGearbox
         Parameters of the caption; the axis of the figure replaces the swept one.
     parameter : str
-        Parameter on the vertical axis, a field of `base`.
+        Parameter on the vertical axis, a field of `gearbox`.
     lowest, highest : float
         Ends of the vertical axis. But for the inertias (section 7.4.1) axes are not printed: they are chosen so
         that what the text says can be seen.
@@ -144,16 +121,16 @@ class TorsionalFigure:
         Lowest speed of the map [rpm of the face gear]: lower down there are ever more and ever narrower tongues.
     """
 
-    base: ProportionalGearbox
+    gearbox: ProportionalGearbox
     parameter: str
     lowest: float
     highest: float
     scale: Literal["linear", "log"]
     lowest_rpm: float
 
-    def model(self, **options: Any) -> ProportionalGearbox:
-        """Return the model of the figure; `options` replace fields of it."""
-        return replace(self.base, **options)
+    def model(self, **options: Any) -> Torsional:
+        """Return the model of the figure; `options` are those of :class:`facegear.mechanics.torsional.Torsional`."""
+        return Torsional(self.gearbox, **options)
 
 
 def _inertias(gear_inertia: float, load_inertia: float) -> ProportionalGearbox:

@@ -8,7 +8,7 @@ the dissertation. In (4-4) the letter t stands for r where second derivatives ar
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -17,7 +17,16 @@ from numpy.typing import ArrayLike
 from scipy import linalg, optimize, special
 
 from facegear.geometry.drive import Drive
-from facegear.support.parameters import STEEL, Material, finite, finite_array, integer_within, keep, within
+from facegear.support.parameters import (
+    STEEL,
+    Material,
+    designed,
+    finite,
+    finite_array,
+    integer_within,
+    keep,
+    within,
+)
 from facegear.support.types import FloatArray
 
 BORE_RATIO_RANGE = (0.05, 0.9)
@@ -252,8 +261,8 @@ class Body:
     """
 
     drive: Drive
-    thickness_ratio: float
-    bore_radius: float = 0.05
+    thickness_ratio: float = field(metadata=designed("thickness of the body"))
+    bore_radius: float = field(default=0.05, metadata=designed("bore radius"))
     material: Material = STEEL
     nodal_circles: int = 1
     nodal_diameters: int = 3

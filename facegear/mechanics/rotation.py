@@ -22,7 +22,7 @@ from facegear.floquet.collocation import FreeModes, chain, gauss_rule, panel_edg
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import merge_breakpoints
 from facegear.geometry.phases import phase_split
-from facegear.mechanics.disk import coordinates
+from facegear.mechanics.disk import disk_modes
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import finite_array
 from facegear.support.types import ComplexArray, FloatArray
@@ -67,7 +67,7 @@ class DiskWaves:
         ValueError
             If the disk does not look alike from all sides.
         """
-        diameters = np.array([coordinate.nodal_diameters for coordinate in coordinates(model.body)])
+        diameters = np.array([mode.nodal_diameters for mode in disk_modes(model.body)])
         different = diameters[:, None] != diameters
         for name in ("mass", "damping", "stiffness"):
             matrix = getattr(system, name)
@@ -134,7 +134,7 @@ class TurnedPinions:
         system, load = _one_pinion(model, speed)
         known = DiskWaves.of(model, system) if waves is None else waves
         # Against the disk's rotation the contact is mirrored, and turning it on turns it the other way round.
-        self._sense = -1.0 if model.travel == "with_disk" else 1.0
+        self._sense = model.contact.sense
         self._waves = known.waves
         self._prepare(system, load, known, chosen)
 
@@ -223,10 +223,10 @@ class TurnedPinions:
 
 def _one_pinion(model: Transverse, speed: float) -> tuple[PeriodicSystem, ContactLoad]:
     """System with one pinion at angle 0, and its load."""
-    if not isinstance(model, Transverse):
-        raise TypeError(f"model must be a Transverse, got {model!r}")
-    if model.rate != "frozen":
-        raise ValueError(f'rate of the model must be "frozen" for pinions to be turned, got {model.rate!r}')
+    if model.contact.rate != "frozen":
+        raise ValueError(
+            f'rate of the model must be "frozen" for pinions to be turned, got {model.contact.rate!r}'
+        )
     system = replace(model, pinion_angles=(0.0,)).system(speed)
     if len(system.loads) != 1:
         raise ValueError(f"model must have no loads but its pinions, got {len(system.loads) - 1} more")

@@ -14,20 +14,23 @@ otherwise.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Literal, NamedTuple
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, SkewLine, checked_contact_ratio, mesh_period
+from facegear.geometry.kinematics import mesh_period
+from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.support.parameters import (
     STEEL,
     Material,
+    designed,
     finite_array,
     keep,
     nonnegative,
@@ -38,7 +41,6 @@ from facegear.support.parameters import (
 from facegear.support.types import FloatArray
 
 Arm = Literal["printed", "conjugate"]
-Path = Literal["skew_line", "contact_path", "centroid"]
 
 DEDENDUM = 1.25
 """Dedendum H over addendum a_g in the model of the tooth as a cantilever (7-1)."""
@@ -148,10 +150,6 @@ class Gearbox:
         k1, k2 of the shafts [N m/rad], greater than 0.
     input_damping, output_damping : float
         c1, c2 of the shafts [N m s/rad], 0 or greater.
-    contact_ratio : float, optional
-        Mesh periods that a tooth pair stays in mesh. Default None: Tregold's, as printed, that of whatever `drive`
-        there is (`mesh_contact_ratio`); `drive.geometric_contact_ratio` is that of the true sweep. A number stays
-        when the drive is replaced.
 
     Raises
     ------
@@ -160,16 +158,15 @@ class Gearbox:
     """
 
     drive: Drive
-    pinion_inertia: float
-    gear_inertia: float
-    load_inertia: float
-    mesh_stiffness: float
-    mesh_damping: float
-    input_stiffness: float
-    input_damping: float
-    output_stiffness: float
-    output_damping: float
-    contact_ratio: float | None = None
+    pinion_inertia: float = field(metadata=designed("inertia of the pinion"))
+    gear_inertia: float = field(metadata=designed("inertia of the face gear"))
+    load_inertia: float = field(metadata=designed("inertia of the load"))
+    mesh_stiffness: float = field(metadata=designed("mesh stiffness"))
+    mesh_damping: float = field(metadata=designed("mesh damping"))
+    input_stiffness: float = field(metadata=designed("input shaft stiffness"))
+    input_damping: float = field(metadata=designed("input shaft damping"))
+    output_stiffness: float = field(metadata=designed("output shaft stiffness"))
+    output_damping: float = field(metadata=designed("output shaft damping"))
 
     def __post_init__(self) -> None:
         if not isinstance(self.drive, Drive):
@@ -190,14 +187,11 @@ class Gearbox:
             output_stiffness=positive("output_stiffness", self.output_stiffness, "N m/rad"),
             output_damping=nonnegative("output_damping", self.output_damping, "N m s/rad"),
         )
-        # Fails here rather than at the first use if the contact ratio is not valid.
-        ratio = self.mesh_contact_ratio
-        keep(self, contact_ratio=None if self.contact_ratio is None else ratio)
 
     @property
-    def mesh_contact_ratio(self) -> float:
-        """Mesh periods that a tooth pair stays in mesh: `contact_ratio` if given, else Tregold's (3-23 to 3-26)."""
-        return checked_contact_ratio(self.drive, self.contact_ratio)
+    def in_si(self) -> Gearbox:
+        """Itself: gearboxes in other units say here what they are in SI (:class:`InSi`)."""
+        return self
 
     @property
     def mass_matrix(self) -> FloatArray:
@@ -225,55 +219,34 @@ def _shafts(first: float, second: float) -> FloatArray:
     return np.array([[first, 0.0, 0.0], [0.0, second, -second], [0.0, -second, second]])
 
 
-class _Mesh(NamedTuple):
-    """What the shape vectors of the tooth pairs depend on."""
+class InSi(Protocol):
+    """Anything that says what gearbox it is."""
 
-    drive: Drive
-    contact_ratio: float
-    arm: Arm
-    path: Path
+    @property
+    def in_si(self) -> Gearbox:
+        """The gearbox in SI units."""
+        ...
 
 
 @lru_cache(maxsize=256)
-def _shapes(mesh: _Mesh) -> tuple[PiecewiseChebyshev, ...]:
-    """Shape vector of each tooth pair, numbered by age, against t/T0."""
-    drive = mesh.drive
-    skew, contact = SkewLine(drive, mesh.contact_ratio), ContactPath(drive, mesh.contact_ratio)
-    moving = mesh.arm == "printed"
-    breakpoints = contact.breakpoints if moving and mesh.path != "skew_line" else skew.breakpoints
-    edges = (*breakpoints, 1.0)
+def _shapes(drive: Drive, contact: Contact, arm: Arm) -> tuple[PiecewiseChebyshev, ...]:
+    """Shape vector of each load against t/T0."""
 
-    def arms(pair: int, piece: int, local: FloatArray) -> FloatArray:
-        """Arm about the face-gear axis [m] while the pair is in contact; `local` from -1 to 1."""
-        if not moving:
-            return np.full(local.shape, drive.base_radius / drive.speed_ratio)
-        if mesh.path == "skew_line":
-            radius = skew.pair_states_on_piece(piece, local).radius[pair]
-        elif mesh.path == "contact_path":
-            radius = contact.pair_states_on_piece(piece, local).radius[pair]
+    def vector(x: FloatArray, angle: FloatArray) -> FloatArray:
+        # Arm about the face-gear axis [m]
+        if arm == "printed":
+            arms = x * drive.outer_radius * math.cos(drive.pressure_angle)
         else:
-            radius = contact.centroid_on_piece(piece, local).radius
-        return np.asarray(radius * math.cos(drive.pressure_angle), dtype=float)
+            arms = np.full(x.shape, drive.base_radius * drive.gear_ratio)
+        return np.stack([np.full(x.shape, drive.base_radius), -arms, np.zeros(x.shape)], axis=-1)
 
-    def shape(pair: int) -> PiecewiseChebyshev:
-        def function(fraction: FloatArray, piece: int) -> FloatArray:
-            start, end = edges[piece], edges[piece + 1]
-            vector = np.zeros((fraction.size, 3))
-            if (start + end) / 2.0 + pair < mesh.contact_ratio:
-                local = np.clip((2.0 * fraction - start - end) / (end - start), -1.0, 1.0)
-                vector[:, 0] = drive.base_radius
-                vector[:, 1] = -arms(pair, piece, local)
-            return vector
-
-        return PiecewiseChebyshev.fit(function, breakpoints)
-
-    return tuple(shape(pair) for pair in range(skew.pairs))
+    return tuple(place.shape(vector) for place in contact.places(drive))
 
 
 @lru_cache(maxsize=256)
-def _mean_dyad(mesh: _Mesh) -> FloatArray:
+def _mean_dyad(drive: Drive, contact: Contact, arm: Arm) -> FloatArray:
     """Mean over the mesh period of Σ φφᵀ, shape (3, 3) [m²]."""
-    shapes = _shapes(mesh)
+    shapes = _shapes(drive, contact, arm)
 
     def dyads(fraction: FloatArray) -> FloatArray:
         vectors = np.stack([shape(fraction) for shape in shapes])
@@ -290,65 +263,77 @@ class Torsional:
 
     Parameters
     ----------
-    box : Gearbox
+    gearbox : Gearbox
+        Or anything with such a one in SI units (:class:`InSi`), as
+        :class:`facegear.mechanics.gearboxes.ProportionalGearbox`.
+    contact : Contact
+        How the tooth pairs touch. Default as printed: each pair on the skew line (3-22), with Tregold's contact ratio
+        and total rate. Every load of it has the whole stiffness k_m of a pair.
     arm : {"printed", "conjugate"}
         Moment arm of the mesh force about the face-gear axis: r(t) cos α_c as printed in (7-3), or r_b1 N2/N1, the
-        constant arm of the conjugate tooth.
-    path : {"skew_line", "contact_path", "centroid"}
-        Radius r(t) of the printed arm: of each pair on the skew line (3-22) as printed, of each pair's true contact
-        point, or of the centroid of all contact points (3-21). The conjugate arm does not depend on it.
+        constant arm of the conjugate tooth, wherever the contact point is.
 
     Raises
     ------
     TypeError, ValueError
-        If an argument is of the wrong kind.
+        If an argument is of the wrong kind or outside its range, or the contact not possible with these teeth.
 
     Examples
     --------
     >>> from facegear.geometry.drive import Drive
-    >>> box = Gearbox(Drive(31, 107, 3.175e-3), 1.6e-3, 0.15, 0.17, 1.58e8, 1.58e3, 1.42e6, 14.2, 1.58e7, 158.0)
-    >>> Torsional(box).system(speed=50.0).size
+    >>> gearbox = Gearbox(Drive(31, 107, 3.175e-3), 1.6e-3, 0.15, 0.17, 1.58e8, 1.58e3, 1.42e6, 14.2, 1.58e7, 158.0)
+    >>> Torsional(gearbox).system(speed=50.0).size
     3
     """
 
-    box: Gearbox
+    gearbox: InSi
+    contact: Contact = SKEW_LINE
     arm: Arm = "printed"
-    path: Path = "skew_line"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.box, Gearbox):
-            raise TypeError(f"box must be a Gearbox, got {self.box!r}")
+        if not isinstance(getattr(self.gearbox, "in_si", None), Gearbox):
+            raise TypeError(f"gearbox must be a Gearbox, got {self.gearbox!r}")
+        if not isinstance(self.contact, Contact):
+            raise TypeError(f"contact must be a Contact, got {self.contact!r}")
         one_of("arm", self.arm, ("printed", "conjugate"))
-        one_of("path", self.path, ("skew_line", "contact_path", "centroid"))
-        if self.arm == "printed" and self.path != "skew_line":
-            path = ContactPath(self.box.drive, self.box.mesh_contact_ratio)
-            path.require_finite_speed(f"path = {self.path!r}")
-            if self.path == "centroid":
-                path.require_slow_centroid("path = 'centroid'")
+        self.contact.require(self.drive)
 
     @property
-    def _mesh(self) -> _Mesh:
-        return _Mesh(self.box.drive, self.box.mesh_contact_ratio, self.arm, self.path)
+    def drive(self) -> Drive:
+        """Teeth of pinion and face gear."""
+        return self.gearbox.in_si.drive
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Elastic deviation angles χ1, χ2, χo (7-9)."""
+        return tuple(Coordinate(name, "rad", name) for name in ("pinion", "face gear", "load"))
+
+    @property
+    def contact_ratio(self) -> float:
+        """Mesh periods that a tooth pair stays in mesh: that of the contact if given, else Tregold's."""
+        return self.contact.ratio(self.drive)
 
     @property
     def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
         """Shape vector φ of each tooth pair against t/T0 [m], the youngest pair first; 0 out of contact (7-3)."""
-        return _shapes(self._mesh)
+        return _shapes(self.drive, self.contact, self.arm)
 
     @property
     def mean_stiffness(self) -> FloatArray:
         """Mean of K(t) with the face gear at rest, U(0) of (7-16) without its term in ṙ, shape (3, 3)."""
-        return np.asarray(self.box.stiffness_matrix + self.box.mesh_stiffness * _mean_dyad(self._mesh))
+        gearbox = self.gearbox.in_si
+        dyad = _mean_dyad(self.drive, self.contact, self.arm)
+        return np.asarray(gearbox.stiffness_matrix + gearbox.mesh_stiffness * dyad)
 
     def natural_frequencies(self) -> FloatArray:
         """Natural frequencies of the mean system at rest (7-17 with Ω2 = 0), ascending, shape (3,) [rad/s]."""
-        root = 1.0 / np.sqrt(np.diag(self.box.mass_matrix))
+        root = 1.0 / np.sqrt(np.diag(self.gearbox.in_si.mass_matrix))
         squares = np.linalg.eigvalsh(root[:, np.newaxis] * self.mean_stiffness * root)
         return np.asarray(np.sqrt(squares), dtype=float)
 
     def natural_speeds(self) -> FloatArray:
         """Speeds of the face gear at which the mesh frequency is a natural one (7-20), shape (3,) [rad/s]."""
-        return natural_speed(self.box.drive, self.natural_frequencies())
+        return natural_speed(self.drive, self.natural_frequencies())
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed (7-10).
@@ -368,10 +353,20 @@ class Torsional:
         TypeError, ValueError
             If `speed` is not a finite number greater than 0.
         """
-        box = self.box
+        gearbox = self.gearbox.in_si
         loads = tuple(
-            ContactLoad(shape, stiffness=box.mesh_stiffness, damping=box.mesh_damping, rate="total")
+            ContactLoad(
+                shape,
+                stiffness=gearbox.mesh_stiffness,
+                damping=gearbox.mesh_damping,
+                rate=self.contact.rate,
+            )
             for shape in self.shapes
         )
-        period = mesh_period(box.drive, speed)
-        return PeriodicSystem(box.mass_matrix, box.damping_matrix, box.stiffness_matrix, loads, period)
+        return PeriodicSystem(
+            gearbox.mass_matrix,
+            gearbox.damping_matrix,
+            gearbox.stiffness_matrix,
+            loads,
+            mesh_period(self.drive, speed),
+        )

@@ -8,7 +8,7 @@ which ``np.int8(70) - 1`` still fits and ``np.int8(70) + 70`` does not. A boolea
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from numbers import Integral, Real
 from typing import Any
 
@@ -45,6 +45,25 @@ def keep(instance: object, **checked: Any) -> None:
     """
     for name, value in checked.items():
         object.__setattr__(instance, name, value)
+
+
+def designed(words: str, step: str | None = None) -> dict[str, str]:
+    """Metadata of a dataclass field that a designer can change by parts of its value.
+
+    Parameters
+    ----------
+    words : str
+        What the field is called in a table of changes.
+    step : str, optional
+        Of a field that lists places, such as angles, of which the first is where one counts from: dotted attribute of
+        the dataclass by whose parts the others are moved.
+
+    Returns
+    -------
+    dict
+        For ``dataclasses.field(metadata=…)``; :func:`facegear.design.changes.possible_changes` reads it.
+    """
+    return {"designed": words} if step is None else {"designed": words, "step": step}
 
 
 def finite(name: str, value: Any, unit: str = "") -> float:
@@ -332,7 +351,7 @@ class Material:
     density: float
     youngs_modulus: float
     poissons_ratio: float
-    viscous_loss_factor: float
+    viscous_loss_factor: float = field(metadata=designed("loss factor of the material"))
     yield_strength: float
 
     def __post_init__(self) -> None:
@@ -375,9 +394,9 @@ class MeshLoad:
         A value is not a number or outside the range named above.
     """
 
-    stiffness: float
-    damping: float
-    mass: float
+    stiffness: float = field(metadata=designed("bearing stiffness"))
+    damping: float = field(metadata=designed("bearing damping"))
+    mass: float = field(metadata=designed("pinion mass"))
 
     def __post_init__(self) -> None:
         keep(

@@ -21,6 +21,7 @@ from facegear.design.cancellation import (
 )
 from facegear.geometry.phases import phase_split
 from facegear.mechanics.cases import EXAMPLE_B
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_matrices
 from facegear.support.parameters import rad_per_s
 
@@ -77,10 +78,10 @@ def test_weak_tongues_grow_in_proportion_to_the_sum(travel):
     for factor in (0.02, 0.005):
         tongues = []
         for angles in ((0.0,), (0.0, 80.0, 178.1)):
-            model = weakened(placed(*angles, travel=travel), factor)
+            model = weakened(placed(*angles, contact=Contact(travel=travel)), factor)
             tongues.append(tongue_of(model, PAIR, 0.04 * factor * len(angles), 0.005 * factor * len(angles)))
         one, three = tongues
-        expected = abs(PAIR.phasing_sum(placed(0.0, 80.0, 178.1, travel=travel)))
+        expected = abs(PAIR.phasing_sum(placed(0.0, 80.0, 178.1, contact=Contact(travel=travel))))
         errors.append(abs(three.growth_rate / one.growth_rate - expected))
     assert errors[1] < 0.02
     assert 0.6 < math.log(errors[0] / errors[1]) / math.log(4) < 1.6
@@ -132,7 +133,10 @@ def test_content_of_modes_is_whole():
         (lambda: WavePair(Wave(0, 0), Wave(1, 0), "difference").speed(EXAMPLE_B), "no speed"),
         (lambda: mode_content(EXAMPLE_B, 50.0, 15), "mode"),
         (lambda: interference(EXAMPLE_B.system(50.0), 1, 15), "j must be"),
-        (lambda: interference(replace(EXAMPLE_B, rate="total").system(50.0), 1, 1), "frozen"),
+        (
+            lambda: interference(replace(EXAMPLE_B, contact=Contact(rate="total")).system(50.0), 1, 1),
+            "frozen",
+        ),
     ],
 )
 def test_wrong_arguments_are_named(call, message):

@@ -10,6 +10,7 @@ from facegear.drives.basis import disagreement, settled_tongues, unstable_share,
 from facegear.drives.drive_file import read_drive_file
 from facegear.floquet.labels import Combination
 from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.support.parameters import rad_per_s
 from tests.independent.complex_galerkin import multipliers
 from tests.independent.make_anchors_ch04 import nominal_mass, pinion
@@ -49,9 +50,9 @@ class TestWithBasis:
         assert richer.system(50.0).size == 33
 
     def test_keeps_complete_harmonics_complete(self):
-        driven = replace(CASE_1, power=4e5, power_speed=500.0)
-        assert with_basis(replace(driven, stress_harmonics=5), 2, 5).stress_harmonics == 5
-        assert with_basis(replace(driven, stress_harmonics=6), 2, 5).stress_harmonics == 10
+        for harmonics, expected in ((5, 5), (6, 10)):
+            driven = replace(CASE_1, force=DrivingForce(4e5, 500.0, harmonics=harmonics))
+            assert with_basis(driven, 2, 5).force.harmonics == expected
 
     @pytest.mark.slow
     def test_agrees_with_complex_modes_integrated_by_an_independent_route(self):

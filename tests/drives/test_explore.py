@@ -25,8 +25,11 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.maps.stability_map import stability_map
 from facegear.mechanics import cases
 from facegear.mechanics.classical import meissner_trace
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.disk import shape_vector
+from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import Transverse, shape_vector
+from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
 
 SQUARE = studies.Oscillator(depth=0.6, damping_ratio=0.0, duty=0.4)
@@ -74,7 +77,7 @@ def test_multipliers_and_tongue_of_a_cell_are_those_of_the_closed_form():
     assert complex(detail.multipliers.prod()) == pytest.approx(1.0, abs=1e-9)
     assert detail.growth_rate == pytest.approx(np.log(abs(detail.critical)) * 1.95 / (2 * np.pi))
     assert detail.label == "(1+1)/1"
-    assert detail.deflection is None
+    assert detail.deflections == {}
     assert detail.tongue.lower < 1.95 < detail.tongue.upper
     for border in (detail.tongue.lower, detail.tongue.upper):
         assert abs(float(meissner_trace(border, 0.2, 0.4))) == pytest.approx(2.0, abs=1e-6)
@@ -118,14 +121,14 @@ def test_motion_over_time_is_that_of_the_equation_and_returns_times_the_multipli
 def test_critical_motion_of_a_free_disk_is_a_travelling_wave():
     free = Transverse(cases.CASE_1, MeshLoad(0.0, 0.0, 0.0))
     detail = cell_detail(free, float(rad_per_s(700.0)))
-    deflection = detail.deflection.values
+    deflection = detail.deflections["face gear"].values
     assert np.abs(deflection).max() == pytest.approx(1.0)
     assert np.abs(deflection[0]).max() < 1e-9  # clamped at the bore
     assert np.ptp(np.abs(deflection), axis=1).max() < 1e-6
     turns = np.unwrap(np.angle(deflection[-1]))
     diameters = (turns[-1] - turns[0]) / (2.0 * np.pi)
     assert abs(diameters) == pytest.approx(round(abs(diameters)), abs=1e-6)
-    assert detail.deflection["radius"].values[[0, -1]] == pytest.approx(
+    assert detail.deflections["face gear"]["radius"].values[[0, -1]] == pytest.approx(
         [cases.CASE_1.bore_radius, cases.CASE_1.outer_radius]
     )
 
@@ -133,9 +136,9 @@ def test_critical_motion_of_a_free_disk_is_a_travelling_wave():
 def test_deflection_is_that_of_the_motion():
     model = cases.FIGURES["4.4a"].model()
     detail = cell_detail(model, float(rad_per_s(533.0)))
-    radius, angle = (detail.deflection[name].values for name in ("radius", "angle"))
+    radius, angle = (detail.deflections["face gear"][name].values for name in ("radius", "angle"))
     expected = shape_vector(model.body, radius[7], angle[30]) @ detail.motion
-    assert complex(detail.deflection.values[7, 30]) == pytest.approx(complex(expected))
+    assert complex(detail.deflections["face gear"].values[7, 30]) == pytest.approx(complex(expected))
 
 
 def test_view_is_of_the_cell_that_was_asked_for():
@@ -150,9 +153,8 @@ THREE = Transverse(
     Body(cases.CASE_2.drive, 0.05),
     MeshLoad(0.3, 2e-6, 0.7),
     pinion_angles=(0.0, 2.0, 4.0),
-    contact_ratio=cases.CASE_2.drive.geometric_contact_ratio,
-    power=3e5,
-    power_speed=500.0,
+    contact=Contact(contact_ratio=cases.CASE_2.drive.geometric_contact_ratio),
+    force=DrivingForce(3e5, 500.0),
 )
 
 

@@ -181,7 +181,7 @@ def test_cell_of_a_disk_has_its_deflection_drawn():
 def test_cell_of_a_gearbox_names_its_coordinates():
     study = studies.gearbox_study()
     detail = cell_detail(study.model(study.settings()), float(rad_per_s(640.0)))
-    figure = cell.cell_figure(detail, study.coordinates)
+    figure = cell.cell_figure(detail)
     figure.canvas.draw()
     assert "pinion face gear load" in words(figure)
 

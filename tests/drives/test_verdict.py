@@ -16,6 +16,7 @@ from facegear.drives.drive_file import read_drive_file
 from facegear.floquet.labels import Combination
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue
+from facegear.mechanics.contact import Contact
 from facegear.support.parameters import rad_per_s
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
@@ -47,8 +48,11 @@ class TestDrivenModel:
 
     def test_carries_the_power_and_all_harmonics(self):
         model = verdict.driven(EXAMPLE_B, "dead", 1.6)
-        assert (model.power, model.power_speed) == (447.42e3, EXAMPLE_B.requirements.pinion_speed)
-        assert (model.following, model.stress_harmonics, model.contact_ratio) == ("dead", 6, 1.6)
+        assert (model.force.power, model.force.pinion_speed) == (
+            447.42e3,
+            EXAMPLE_B.requirements.pinion_speed,
+        )
+        assert (model.force.following, model.force.harmonics, model.contact_ratio) == ("dead", 6, 1.6)
 
     def test_flutter_of_the_mean_system_needs_a_following_force(self):
         ratio = CASE_1.drive.geometric_contact_ratio
@@ -73,7 +77,10 @@ class TestCases:
 
     def test_of_a_file_that_asks_for_the_true_sweep(self):
         true = replace(
-            CASE_1, transverse=replace(CASE_1.transverse, contact_ratio=CASE_1.drive.geometric_contact_ratio)
+            CASE_1,
+            transverse=replace(
+                CASE_1.transverse, contact=Contact(contact_ratio=CASE_1.drive.geometric_contact_ratio)
+            ),
         )
         assert list(verdict.clocks(true)) == ["true sweep", "Tregold"]
 

@@ -70,7 +70,7 @@ def test_stiff_gearboxes_take_one_window_and_agree_with_dop853(name, value):
     assert len(curve.windows) == 1
     assert curve.error < 1e-10
     speeds_rpm = np.array([711.7, 1333.3])
-    truth = [spectral_radius(numbers_of(model.gearbox), speed) for speed in speeds_rpm.tolist()]
+    truth = [spectral_radius(numbers_of(model), speed) for speed in speeds_rpm.tolist()]
     assert curve.spectral_radii(rad_per_s(speeds_rpm)) == pytest.approx(truth, abs=1e-9)
 
 

@@ -56,7 +56,7 @@ def test_constant_system_against_the_exponential(damping):
 def test_stiff_gearboxes_against_dop853(name, value, speed_rpm):
     figure = FIGURES[name]
     model = replace_parameter(figure.model(), figure.parameter, value)
-    truth = spectral_radius(numbers_of(model.gearbox), speed_rpm)
+    truth = spectral_radius(numbers_of(model), speed_rpm)
     system = model.system(rad_per_s(speed_rpm))
     assert np.abs(floquet.multipliers(system, Radau())[0]) == pytest.approx(truth, abs=1e-10)
     assert floquet.error_estimate(system, Radau()) < 1e-9

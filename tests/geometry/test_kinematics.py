@@ -281,6 +281,7 @@ def test_skew_line_is_3_22():
     line = SkewLine(CASE_I)
     r1, r2, cr = CASE_I.inner_radius, CASE_I.outer_radius, CASE_I.contact_ratio
     assert line.breakpoints == (0.0, pytest.approx(cr - 1.0, abs=1e-15))
+    assert line.slope == pytest.approx((r1 - r2) / cr, rel=1e-14)
     for x in (0.0, 0.2, 0.5, 0.6, 0.99, -0.4, 5.5):
         states = line.pair_states(x)
         start = x - math.floor(x)
@@ -288,7 +289,6 @@ def test_skew_line_is_3_22():
             assert states.in_contact[j] == (age <= cr)
             expected = r2 - (r2 - r1) * age / cr if age <= cr else 0.0
             assert states.radius[j] == pytest.approx(expected, rel=1e-13)
-            assert states.slope[j] == pytest.approx((r1 - r2) / cr if age <= cr else 0.0, rel=1e-13)
     ends = [line.pair_states_on_piece(i, np.array([-1.0, 1.0])) for i in (0, 1)]
     assert ends[0].radius[0, 0] == pytest.approx(r2, rel=1e-14)
     assert ends[0].radius[1, 1] == pytest.approx(r1, rel=1e-12)

@@ -36,7 +36,11 @@ def growth(body, speed_rpm, contact_ratio=None):
 
 def strongest(body, low_rpm, high_rpm, contact_ratio=None):
     """Speed of the strongest tongue between two speeds [rpm]."""
-    found = tongues(fg.Transverse(body, LOAD, contact_ratio=contact_ratio), rpm(low_rpm), rpm(high_rpm))
+    found = tongues(
+        fg.Transverse(body, LOAD, contact=fg.Contact(contact_ratio=contact_ratio)),
+        rpm(low_rpm),
+        rpm(high_rpm),
+    )
     return float(fg.rpm(max(found, key=lambda tongue: tongue.growth_rate).peak))
 
 
@@ -172,7 +176,11 @@ def geometric():
     for ratio in (0.02, 0.0215):
         body = fg.Body(drive, ratio)
         speed = strongest(body, 380.0, 480.0, contact_ratio)
-        found = tongues(fg.Transverse(body, LOAD, contact_ratio=contact_ratio), rpm(100.0), rpm(1000.0))
+        found = tongues(
+            fg.Transverse(body, LOAD, contact=fg.Contact(contact_ratio=contact_ratio)),
+            rpm(100.0),
+            rpm(1000.0),
+        )
         number = int(np.argmin([abs(fg.rpm(tongue.peak) - speed) for tongue in found]))
         value, tolerance = growth(body, speed, contact_ratio)
         yield anchor("largest_growth", value, 10 * tolerance, section=ratio, tongue=number)

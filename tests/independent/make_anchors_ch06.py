@@ -17,6 +17,8 @@ from tqdm import tqdm
 from facegear.design.envelope import largest_power
 from facegear.floquet.models import replace_parameter
 from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES, POWER_SPEED_RPM, POWERS_HP
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.edge_stiffness import DrivingForce
 from tests.independent.complex_galerkin import ComplexDisk, multipliers
 from tests.independent.edge_load import LoadedDisk, at_rest, shot
 from tests.independent.make_anchors_ch04 import (
@@ -257,7 +259,7 @@ def limit(number, variant, parameter, value, stiffness=None):
     """Power at which growth vanishes, at the speed that the package names."""
     body, figure, _ = CASES[number]
     ratio = body.drive.geometric_contact_ratio if variant else None
-    model = figure.model(power=0.0, power_speed=rpm(POWER_SPEED_RPM), contact_ratio=ratio)
+    model = figure.model(force=DrivingForce(0.0, rpm(POWER_SPEED_RPM)), contact=Contact(contact_ratio=ratio))
     if stiffness is not None:
         model = replace_parameter(model, "stiffness", stiffness)
     model = replace_parameter(model, parameter, value)

@@ -72,7 +72,7 @@ def axis(figure, count):
 
 
 def numbers(figure, value):
-    return numbers_of(replace_parameter(figure.model(), figure.parameter, float(value)).gearbox)
+    return numbers_of(replace_parameter(figure.model(), figure.parameter, float(value)))
 
 
 def growth_anchor(name, row, column):
@@ -155,7 +155,7 @@ def natural_anchors(name):
 
 
 def arm_anchors():
-    n = numbers_of(FIGURES["7.12a"].model().gearbox)
+    n = numbers_of(FIGURES["7.12a"].model())
     cosine = math.cos(n.alpha_c)
     time = 2.0 * (np.arange(402) + 0.5) / 402
     anchors = [{"variable": "conjugate", "at": {}, "value": n.rb1 * 107 / 31, "atol": 1e-12}]

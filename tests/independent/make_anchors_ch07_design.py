@@ -18,8 +18,10 @@ from scipy.integrate import solve_ivp
 
 import facegear as fg
 from compendium.datasets.modulation import ScaledModulation, undamped
+from facegear.floquet.models import replace_parameter
 from facegear.maps.closing import growth_peaks, largest_growth
 from facegear.maps.tracing import tongues
+from facegear.mechanics.contact import SKEW_LINE
 from facegear.mechanics.gearboxes import DRIVE, FIGURES
 from tests.independent import meshing_mpmath, torsional_switching
 from tests.independent.torsional_switching import numbers_of
@@ -36,8 +38,8 @@ GEOMETRY_ROUTE = (
 RTOL = 1e-13
 LIGHT = 1e-6
 CASES = {
-    "7.12a": FIGURES["7.12a"].model(input_damping=LIGHT),
-    "7.13a": FIGURES["7.13a"].model(output_damping=LIGHT),
+    "7.12a": replace_parameter(FIGURES["7.12a"].model(), "input_damping", LIGHT),
+    "7.13a": replace_parameter(FIGURES["7.13a"].model(), "output_damping", LIGHT),
     "7.12b": FIGURES["7.12b"].model(),
 }
 
@@ -129,7 +131,7 @@ def hsu_errors():
     for row, depth in ((0, 0.1), (1, 0.03), (2, 0.1), (3, 0.1), (4, 0.1), (5, 0.1)):
         name, k, j, s = chosen[row]
         gearbox = undamped(CASES[name])
-        n = numbers_of(gearbox.gearbox)
+        n = numbers_of(gearbox)
         # Hsu's borders on paper: the mean, the s-th harmonic of K in modal coordinates, no damping.
         K0 = integrals(n, 1.0, lambda x: 1.0)[1]
         root = np.sqrt(np.array([n.J1, n.J2, n.Jo]))
@@ -160,7 +162,7 @@ def hsu_errors():
 def openings():
     places = {"(1+1)/1": (560, 730), "(1+1)/2": (290, 335), "(1+1)/3": (200, 225), "(1+1)/4": (148, 168)}
     gearbox = CASES["7.12a"]
-    n = numbers_of(gearbox.gearbox)
+    n = numbers_of(gearbox)
     limits = [tuple(float(fg.rad_per_s(v)) for v in place) for place in places.values()]
     for row, depth in ((0, 0.9), (1, 0.7), (2, 0.9), (3, 0.7), (3, 1.1)):
         speed, _ = largest_growth(ScaledModulation(gearbox, depth), *limits[row])
@@ -208,8 +210,8 @@ def crossing(function, near, step=1e-4):
 def variants(name):
     gearbox = CASES[name]
     tregold, geometric = DRIVE.contact_ratio, DRIVE.geometric_contact_ratio
-    plain = numbers_of(gearbox.gearbox)
-    pairs = numbers_of(replace(gearbox, contact_ratio=geometric).gearbox)
+    plain = numbers_of(gearbox)
+    pairs = numbers_of(replace(gearbox, contact=replace(SKEW_LINE, contact_ratio=geometric)))
     soft = replace(pairs, km=pairs.km * tregold / geometric, cm=pairs.cm * tregold / geometric)
     # An arm r cos α_c = r_b1 N2/N1 that does not move.
     constant = plain.rb1 * DRIVE.gear_teeth / DRIVE.pinion_teeth / math.cos(plain.alpha_c)
@@ -279,7 +281,7 @@ def levers():
     """Borders at parameters a little smaller and larger, extrapolated to no difference."""
     number = 0
     for name, gearbox in CASES.items():
-        n = numbers_of(gearbox.gearbox)
+        n = numbers_of(gearbox)
         low, high = (float(fg.rad_per_s(limit)) for limit in (140.0, 1460.0))
         for tongue in tongues(gearbox.torsional, low, high):
             if tongue.lower <= low or tongue.upper >= high:
@@ -316,7 +318,7 @@ def by_speed(n, speed):
 def closing(name, parameter, chosen):
     """Damping at which the growth at the speed of the peak passes zero."""
     gearbox = FIGURES[name].model()
-    n = numbers_of(gearbox.gearbox)
+    n = numbers_of(gearbox)
     field, stiffness = ("c1", n.k1) if parameter == "input_damping" else ("c2", n.k2)
     for row, limits, roots in chosen:
         low, high = (float(fg.rad_per_s(limit)) for limit in limits)

@@ -34,9 +34,9 @@ class Numbers:
     N2: int
 
 
-def numbers_of(box):
-    """Read them off a gearbox of the package."""
-    drive = box.drive
+def numbers_of(model):
+    """Read them off a torsional model of the package."""
+    box, drive = model.gearbox.in_si, model.drive
     return Numbers(
         J1=box.pinion_inertia,
         J2=box.gear_inertia,
@@ -51,7 +51,7 @@ def numbers_of(box):
         R1=drive.inner_radius,
         R2=drive.outer_radius,
         alpha_c=drive.pressure_angle,
-        cr=box.mesh_contact_ratio,
+        cr=model.contact_ratio,
         N2=drive.gear_teeth,
     )
 

@@ -22,6 +22,7 @@ from facegear.maps.sensitivity import (
 )
 from facegear.maps.tracing import tongues
 from facegear.mechanics import classical
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
@@ -73,7 +74,8 @@ class Meissner:
 
 
 def torsional(**options):
-    return replace(FIGURES["7.12a"].model(), input_damping=2e-6, **options).torsional
+    damped = replace_parameter(FIGURES["7.12a"].model(), "input_damping", 2e-6)
+    return replace(damped, gearbox=damped.gearbox.in_si, **options)
 
 
 def relative_orders(function, value, exact, steps=(0.02, 0.01, 0.005)):
@@ -172,7 +174,8 @@ def test_gyroscopic_transverse_model_has_derivatives_too():
 @given(speed_rpm=st.floats(400.0, 900.0), damping=st.floats(1e-6, 3e-5))
 def test_units_of_mass_and_time_change_no_multiplier(speed_rpm, damping):
     """Euler's identities: all forces in proportion, and all times in proportion, leave multipliers alone."""
-    model = replace(FIGURES["7.13a"].model(), output_damping=damping).torsional
+    model = replace_parameter(FIGURES["7.13a"].model(), "output_damping", damping)
+    model = replace(model, gearbox=model.gearbox.in_si)
     found = sensitivity(model, float(rad_per_s(speed_rpm)), (*BOX, "speed"))
     by = dict(zip((*BOX, "speed"), found.logarithmic_derivatives * found.values, strict=True))
     size = max(map(abs, by.values()))
@@ -303,6 +306,6 @@ class TestRefusals:
 
     def test_velocity_kicks(self):
         body = Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=0, nodal_diameters=1)
-        model = Transverse(body, MeshLoad(1.0, 3e-6, 1.0), rate="total")
+        model = Transverse(body, MeshLoad(1.0, 3e-6, 1.0), contact=Contact(rate="total"))
         with pytest.raises(ValueError, match="velocity kicks"):
             sensitivity(model, 60.0, ("stiffness",))

@@ -4,6 +4,7 @@ import pytest
 
 from facegear.floquet.models import replace_parameter
 from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES, HIGHEST_SPEED_RPM, MODULE
+from facegear.mechanics.contact import Contact
 
 
 @pytest.mark.parametrize(
@@ -35,4 +36,4 @@ def test_every_figure_can_be_swept(name):
 
 
 def test_options_reach_the_model():
-    assert FIGURES["4.4a"].model(rate="total").rate == "total"
+    assert FIGURES["4.4a"].model(contact=Contact(rate="total")).contact.rate == "total"

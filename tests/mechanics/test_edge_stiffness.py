@@ -6,17 +6,18 @@ from functools import cache
 import numpy as np
 import pytest
 
+from facegear.floquet.models import replace_parameter
 from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_matrices, shape_vector, unit_shape
 from facegear.mechanics.edge_stiffness import (
+    DrivingForce,
     complete_harmonics,
-    driving_force,
     edge_load_stiffness,
     strong_form_stiffness,
     unit_stiffness,
 )
 from facegear.mechanics.inplane import EdgeLoadStress
-from facegear.mechanics.transverse import Transverse
 from tests.independent.edge_load import LoadedDisk
 from tests.mechanics.test_transverse import complex_disk, unitary
 
@@ -89,32 +90,28 @@ def test_forces_add_up():
 
 def test_driving_force_of_the_text():
     power, speed = 1e5, 500.0
-    assert driving_force(CASE_1, power, speed) == pytest.approx(
-        power / speed / (26 * 3.175e-3 / 2), rel=1e-12
-    )
-    for change, message in (((-1.0, 1.0), "power must be"), ((1.0, 0.0), "power_speed must be")):
-        with pytest.raises(ValueError, match=message):
-            driving_force(CASE_1, *change)
+    force = DrivingForce(power, speed).newtons(CASE_1.drive)
+    assert force == pytest.approx(power / speed / (26 * 3.175e-3 / 2), rel=1e-12)
 
 
 class TestPowerOfTheModel:
-    MODEL = FIGURES["4.4a"].model(power=2e5, power_speed=500.0)
+    MODEL = FIGURES["4.4a"].model(force=DrivingForce(2e5, 500.0))
+    NEWTONS = 2e5 / 500.0 / (26 * 3.175e-3 / 2)
 
     def test_only_the_stiffness_changes_and_in_proportion(self):
         plain, loaded = FIGURES["4.4a"].model().system(70.0), self.MODEL.system(70.0)
-        double = replace(self.MODEL, power=4e5).system(70.0)
+        double = replace_parameter(self.MODEL, "power", 4e5).system(70.0)
         np.testing.assert_allclose(loaded.damping, plain.damping, rtol=1e-12, atol=0.0)
         np.testing.assert_allclose(
             double.stiffness - plain.stiffness, 2 * (loaded.stiffness - plain.stiffness), atol=1e-6
         )
-        expected = self.MODEL.driving_force * unit_stiffness(CASE_1, 70.0, 5, "follower", (0.0,))
+        expected = self.NEWTONS * unit_stiffness(CASE_1, 70.0, 5, "follower", (0.0,))
         np.testing.assert_allclose(loaded.stiffness - plain.stiffness, expected, atol=1e-6)
 
     def test_no_power_is_no_force(self):
         plain = FIGURES["4.4a"].model()
-        assert plain.driving_force == 0.0
         expected = disk_matrices(CASE_1, 50.0)[1]
-        none = replace(self.MODEL, power=0.0)
+        none = replace_parameter(self.MODEL, "power", 0.0)
         for model in (plain, none):
             stiffness = model.system(50.0).stiffness
             np.testing.assert_allclose(stiffness, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
@@ -122,29 +119,26 @@ class TestPowerOfTheModel:
     def test_each_pinion_brings_its_force_and_travel_mirrors_the_place(self):
         angles = (0.0, 1.2)
         printed = replace(self.MODEL, pinion_angles=angles)
-        mirrored = replace(printed, travel="with_disk")
+        mirrored = replace(printed, contact=Contact(travel="with_disk"))
         for model, places in ((printed, angles), (mirrored, (0.0, -1.2))):
             added = model.system(60.0).stiffness - disk_matrices(CASE_1, 60.0)[1]
-            expected = model.driving_force * unit_stiffness(CASE_1, 60.0, 5, "follower", places)
+            expected = self.NEWTONS * unit_stiffness(CASE_1, 60.0, 5, "follower", places)
             np.testing.assert_allclose(added, expected, atol=1e-6)
 
     @pytest.mark.parametrize(
         ("change", "error", "message"),
         [
-            ({"power": None}, ValueError, "go together"),
-            ({"power_speed": None}, ValueError, "go together"),
+            ({"power": None}, TypeError, "power must be a real number"),
             ({"power": -1.0}, ValueError, "power must be 0 or greater"),
-            ({"power_speed": 0.0}, ValueError, "power_speed must be greater than 0"),
+            ({"pinion_speed": 0.0}, ValueError, "pinion_speed must be greater than 0"),
             ({"power": "much"}, TypeError, "power must be a real number"),
             ({"following": "tangent"}, ValueError, "following must be"),
-            ({"stress_harmonics": 5.0}, TypeError, "stress_harmonics must be an integer"),
+            ({"harmonics": 5.0}, TypeError, "harmonics must be an integer"),
         ],
     )
     def test_bad_input_is_named(self, change, error, message):
         with pytest.raises(error, match=message):
-            Transverse(
-                **({"body": CASE_1, "load": self.MODEL.load, "power": 1.0, "power_speed": 1.0} | change)
-            )
+            DrivingForce(**({"power": 1.0, "pinion_speed": 1.0} | change))
 
 
 def test_bad_stress_is_named():

@@ -19,19 +19,16 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.phases import phase_split
 from facegear.maps.stability_map import stability_map
-from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import (
-    Transverse,
-    contact_centroid,
-    contact_shape,
-    coordinates,
+from facegear.mechanics.contact import CENTROID, Contact
+from facegear.mechanics.disk import (
     disk_matrices,
+    disk_modes,
     disk_stiffness,
-    nominal_pinion_mass,
     reference_stiffness,
-    rotated,
     shape_vector,
 )
+from facegear.mechanics.plate import Body
+from facegear.mechanics.transverse import Transverse, contact_shape, nominal_pinion_mass, rotated
 from facegear.support.parameters import MeshLoad, rad_per_s
 from facegear.symbolic import galerkin
 from tests.independent.complex_galerkin import ComplexDisk, Pinion
@@ -67,7 +64,7 @@ def unitary(body: Body) -> np.ndarray:
         for n in range(-body.nodal_diameters, body.nodal_diameters + 1)
         for m in range(body.nodal_circles + 1)
     ]
-    columns = coordinates(body)
+    columns = disk_modes(body)
     U = np.zeros((len(rows), len(columns)), dtype=complex)
     for i, (m, n) in enumerate(rows):
         for j, coordinate in enumerate(columns):
@@ -88,8 +85,9 @@ def without_damping(body: Body) -> Body:
 
 class TestDisk:
     def test_fourteen_coordinates(self):
-        assert len(coordinates(CASE_ONE)) == 14
-        assert coordinates(CASE_ONE)[:4] == ((0, 0, "cos"), (1, 0, "cos"), (0, 1, "cos"), (1, 1, "cos"))
+        assert len(disk_modes(CASE_ONE)) == 14
+        first = [(c.nodal_circles, c.nodal_diameters, c.wave) for c in disk_modes(CASE_ONE)[:4]]
+        assert first == [(0, 0, "cos"), (1, 0, "cos"), (0, 1, "cos"), (1, 1, "cos")]
 
     @pytest.mark.parametrize("speed_rpm", [0.0, 10.0, 1000.0])
     @pytest.mark.parametrize("size", [(1, 3), (3, 6)])
@@ -133,7 +131,7 @@ class TestDisk:
         damping, stiffness = disk_matrices(body, speed)
         still = complex_disk(body)
         for n in (1, 2, 3):
-            rows = [i for i, c in enumerate(coordinates(body)) if c.nodal_diameters == n]
+            rows = [i for i, c in enumerate(disk_modes(body)) if c.nodal_diameters == n]
             block = np.ix_(rows, rows)
             state = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness[block], -damping[block]]])
             found = np.sort(np.linalg.eigvals(state).imag)[2:]
@@ -154,7 +152,7 @@ class TestDisk:
             g.Omega_2: speed,
         }
         derived = [np.array(matrix.subs(values), dtype=float) for matrix in (pair.damping, pair.stiffness)]
-        rows = [i for i, c in enumerate(coordinates(body)) if c.nodal_diameters == 2]
+        rows = [i for i, c in enumerate(disk_modes(body)) if c.nodal_diameters == 2]
         damping, stiffness = (matrix[np.ix_(rows, rows)] for matrix in disk_matrices(body, speed))
         np.testing.assert_allclose(damping, derived[0], rtol=1e-12)
         centrifugal = complex_disk(body).centrifugal(2, speed)[0, 0]
@@ -202,15 +200,17 @@ class TestReference:
         assert nominal_pinion_mass(CASE_ONE) == pytest.approx(7840 * volume, rel=1e-12)
 
 
-def model(stiffness=1.0, damping=3e-6, mass=1.0, body=CASE_ONE, **options) -> Transverse:
-    return Transverse(body, MeshLoad(stiffness, damping, mass), **options)
+def model(
+    stiffness=1.0, damping=3e-6, mass=1.0, body=CASE_ONE, pinion_angles=(0.0,), **contact
+) -> Transverse:
+    return Transverse(body, MeshLoad(stiffness, damping, mass), pinion_angles, Contact(**contact))
 
 
 def complex_pinions(transverse: Transverse) -> list[Pinion]:
     """Centroids of the pinions by (5-1) to (5-4), straight from the contact path."""
     drive = transverse.body.drive
-    path = ContactPath(drive, transverse.mesh_contact_ratio)
-    sense = {"printed": 1, "with_disk": -1}[transverse.travel]
+    path = ContactPath(drive, transverse.contact_ratio)
+    sense = {"printed": 1, "with_disk": -1}[transverse.contact.travel]
     pinions = []
     for angle in transverse.pinion_angles:
         phase = angle / (2 * math.pi / drive.gear_teeth) % 1.0
@@ -326,10 +326,10 @@ class TestTransverse:
 
     def test_tregold_is_the_default(self):
         drive = CASE_ONE.drive
-        assert model().contact_ratio is None
-        assert model().mesh_contact_ratio == drive.contact_ratio == pytest.approx(1.5532, abs=5e-5)
+        assert model().contact.contact_ratio is None
+        assert model().contact_ratio == drive.contact_ratio == pytest.approx(1.5532, abs=5e-5)
         same, other = (model(contact_ratio=r) for r in (drive.contact_ratio, drive.geometric_contact_ratio))
-        assert same.mesh_contact_ratio == model().mesh_contact_ratio != other.mesh_contact_ratio
+        assert same.contact_ratio == model().contact_ratio != other.contact_ratio
         for one, two in zip(model().shapes, same.shapes, strict=True):
             size = np.abs(one.coefficients).max()
             np.testing.assert_allclose(two.coefficients, one.coefficients, rtol=0.0, atol=1e-12 * size)
@@ -339,8 +339,8 @@ class TestTransverse:
             changed = replace_parameter(model(), "pinion_teeth", teeth)
             drive = replace(CASE_ONE.drive, pinion_teeth=teeth)
             assert changed == model(body=replace(CASE_ONE, drive=drive))
-            assert changed.mesh_contact_ratio == drive.contact_ratio != model().mesh_contact_ratio
-        assert replace_parameter(model(contact_ratio=2.0), "pinion_teeth", 28).mesh_contact_ratio == 2.0
+            assert changed.contact_ratio == drive.contact_ratio != model().contact_ratio
+        assert replace_parameter(model(contact_ratio=2.0), "pinion_teeth", 28).contact_ratio == 2.0
 
     def test_map_over_teeth_is_that_of_models_built_anew(self):
         teeth, speeds = (24, 26, 30), [48.0, 55.0, 61.0]
@@ -368,7 +368,7 @@ class TestTransverse:
         by_magnus = growth_rate(system, floquet.AdaptiveMagnus(1e-10))
         assert growth_rate(system) == pytest.approx(by_magnus, abs=1e-6)
         with pytest.raises(ValueError, match="pinion_teeth = 20 is too few for rate = 'total'"):
-            replace(few, rate="total")
+            replace(few, contact=Contact(rate="total"))
 
     def test_static_load_on_the_still_disk(self):
         """A pinion spring in parallel with the disk adds its stiffness to k_d at the contact point."""
@@ -394,7 +394,7 @@ class TestTransverse:
         assert np.abs(first(x) - second(x)).max() > 1e-3 * np.abs(expected).max()
 
     def test_shape_is_continuous_and_its_slope_is_not(self):
-        shape = contact_shape(CASE_ONE.modes, ContactPath(CASE_ONE.drive))
+        shape = contact_shape(CASE_ONE.modes, CENTROID, CASE_ONE.drive)
         largest = shape.largest
         assert np.abs(shape.jumps()).max() < 1e-11 * largest
         jumps = np.abs(shape.derivative().jumps()).max(axis=1)
@@ -411,7 +411,7 @@ class TestTransverse:
         if clock == "contact_ratio":
             x = np.array([0.75, 0.95])
             turn = drive.angular_pitch * (x[1] - x[0])
-            assert -1.1 < np.diff(contact_centroid(path)(x)[:, 1])[0] / turn < -0.8
+            assert -1.1 < np.diff(CENTROID.places(drive)[0].position(x)[:, 1])[0] / turn < -0.8
 
     def test_travel_with_the_disk(self):
         """All angles change sign, which is the same as a disk that turns the other way."""
@@ -419,7 +419,7 @@ class TestTransverse:
         printed, turned = (model(0.5, pinion_angles=angles, travel=t) for t in ("printed", "with_disk"))
         x = np.linspace(0, 1, 11)
         for one, other in zip(printed.shapes, turned.shapes, strict=True):
-            for coordinate, a, b in zip(coordinates(CASE_ONE), one(x).T, other(x).T, strict=True):
+            for coordinate, a, b in zip(disk_modes(CASE_ONE), one(x).T, other(x).T, strict=True):
                 expected = -a if coordinate.wave == "sin" else a
                 np.testing.assert_allclose(b, expected, rtol=0.0, atol=1e-12 * np.abs(one(x)).max())
         system = printed.system(60.0)
@@ -442,7 +442,7 @@ class TestTransverse:
         np.testing.assert_allclose(second(0.2), there(0.2 + 1 / 3), atol=1e-10 * first.largest)
 
     def test_rotation_of_the_shape(self):
-        shape = contact_shape(CASE_ONE.modes, ContactPath(CASE_ONE.drive))
+        shape = contact_shape(CASE_ONE.modes, CENTROID, CASE_ONE.drive)
         x, angle = np.linspace(0, 1, 9), 0.83
         centroid = ContactPath(CASE_ONE.drive).centroid(x)
         expected = shape_vector(CASE_ONE, centroid.radius, centroid.angle + angle)
@@ -484,10 +484,10 @@ class TestTransverse:
         [
             ({"body": CASE_ONE.drive}, TypeError, "body must be a Body"),
             ({"load": 1.0}, TypeError, "load must be a MeshLoad"),
-            ({"rate": "convective"}, ValueError, "rate must be"),
-            ({"travel": "against"}, ValueError, "travel must be"),
-            ({"contact_ratio": 0.9}, ValueError, "contact_ratio"),
-            ({"contact_ratio": float("nan")}, ValueError, "contact_ratio"),
+            ({"contact": 1.5}, TypeError, "contact must be a Contact"),
+            ({"contact": Contact(contact_ratio=0.9)}, ValueError, "contact_ratio"),
+            ({"contact": Contact(sharing="each")}, ValueError, "sharing must be"),
+            ({"force": 1e3}, TypeError, "force must be a DrivingForce or None"),
             ({"pinion_angles": ()}, ValueError, "pinion_angles"),
             ({"pinion_angles": 0.0}, ValueError, "pinion_angles"),
             ({"pinion_angles": (0.0, 120.0)}, ValueError, "degrees"),
@@ -556,5 +556,7 @@ class TestTotalRate:
         transverse = model(0.5, contact_ratio=ratio, rate="total")
         fast = floquet.multipliers(transverse.system(speed))
         assert greatest_distance(fast, momentum_multipliers(transverse, speed)) < 1e-8
-        frozen = floquet.multipliers(replace(transverse, rate="frozen").system(speed))
+        frozen = floquet.multipliers(
+            replace(transverse, contact=replace(transverse.contact, rate="frozen")).system(speed)
+        )
         assert greatest_distance(fast, frozen) > 1e-4

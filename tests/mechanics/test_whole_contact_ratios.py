@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from facegear.floquet.multipliers import growth_rate
-from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.kinematics import CentroidPath, ContactPath, SkewLine
 from facegear.mechanics import cases
 from facegear.mechanics.classical import gear_pair
+from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.disk import shape_vector, unit_shape
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.torsional import Torsional
@@ -16,24 +17,24 @@ from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad
 
 LOAD = MeshLoad(1.0, 3e-6, 1.0)
-BOX = FIGURES["7.12a"].model().gearbox
+BOX = FIGURES["7.12a"].gearbox.in_si
 SPEED = 60.0
 
 
 def transverse(ratio, rate="frozen"):
-    return Transverse(cases.CASE_1, LOAD, contact_ratio=ratio, rate=rate).system(SPEED)
+    return Transverse(cases.CASE_1, LOAD, contact=Contact(contact_ratio=ratio, rate=rate)).system(SPEED)
 
 
 def torsional(ratio, path):
-    return Torsional(replace(BOX, contact_ratio=ratio), path=path).system(SPEED)
+    return Torsional(BOX, replace(SKEW_LINE, path=path, contact_ratio=ratio)).system(SPEED)
 
 
 SYSTEMS = {
     "frozen": transverse,
     "total": lambda ratio: transverse(ratio, "total"),
     **{
-        path: lambda ratio, path=path: torsional(ratio, path)
-        for path in ("skew_line", "contact_path", "centroid")
+        name: lambda ratio, path=path: torsional(ratio, path)
+        for name, path in (("skew_line", SkewLine), ("contact_path", ContactPath), ("centroid", CentroidPath))
     },
     "gear pair": lambda ratio: gear_pair(0.9, ratio, pair_damping=0.1),
 }
@@ -62,7 +63,7 @@ def test_growth_is_continuous_through_a_whole_ratio(name, whole):
 @pytest.mark.parametrize("beside", [0.0, 1e-13, 2e-9, 1e-6])
 def test_at_ratio_one_the_load_follows_the_only_pair(beside):
     body, ratio = cases.CASE_1, 1.0 + beside
-    (shape,) = Transverse(body, LOAD, contact_ratio=ratio).shapes
+    (shape,) = Transverse(body, LOAD, contact=Contact(contact_ratio=ratio)).shapes
     # Fractions at which a single pair is in mesh, from its entry, which lies beyond the rim.
     x = np.array([1e-5, 1e-3, 0.1, 0.4, 0.8, 0.999])
     point = ContactPath(body.drive, ratio).contact_point(x / ratio)
@@ -74,9 +75,9 @@ def test_at_ratio_one_the_load_follows_the_only_pair(beside):
 @pytest.mark.parametrize("ratio", [1.0, 1.0 + 1e-13, 1.0 + 1e-6, 1.0009])
 def test_what_follows_the_centroid_back_in_no_time_is_refused_at_once(ratio):
     with pytest.raises(ValueError, match=r"contact_ratio must be at least 1\.001 for rate = 'total'.*got 1"):
-        Transverse(cases.CASE_1, LOAD, contact_ratio=ratio, rate="total")
-    with pytest.raises(ValueError, match=r"contact_ratio must be at least 1\.001 for path = 'centroid'"):
-        Torsional(replace(BOX, contact_ratio=ratio), path="centroid")
+        Transverse(cases.CASE_1, LOAD, contact=Contact(contact_ratio=ratio, rate="total"))
+    with pytest.raises(ValueError, match=r"contact_ratio must be at least 1\.001 for rate = 'total'"):
+        torsional(ratio, CentroidPath)
 
 
 def test_a_point_off_the_disk_is_refused_where_it_is_asked_for():

@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from facegear.design.body import Requirements
 from facegear.geometry.drive import Drive
 from facegear.mechanics.cases import CASE_1
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.plate import Body
 from facegear.mechanics.torsional import Gearbox, Torsional
@@ -24,11 +26,13 @@ PARTS = [
     STEEL,
     LOAD,
     Transverse(CASE_1, LOAD),
-    FIGURES["7.12a"].model().gearbox,
-    FIGURES["7.12a"].model().torsional,
+    Contact(),
+    DrivingForce(4e5, 500.0),
+    FIGURES["7.12a"].gearbox.in_si,
+    FIGURES["7.12a"].model(),
     Requirements(4e5, 500.0, 1.5, (10.0, 100.0)),
 ]
-TYPES = (Drive, Body, Material, MeshLoad, Transverse, Gearbox, Torsional, Requirements)
+TYPES = (Drive, Body, Material, MeshLoad, Transverse, Contact, DrivingForce, Gearbox, Torsional, Requirements)
 
 numbers = st.one_of(
     st.integers(-(10**12), 10**12),

@@ -64,7 +64,7 @@ def test_conjugate_arm_is_constant():
 @pytest.mark.parametrize("name", ["7.9a", "7.12a", "7.13b"])
 def test_fourier_coefficients_against_exact_integration(name):
     model = FIGURES[name].model()
-    box, system = model.gearbox, model.system(37.0)
+    box, system = model.gearbox.in_si, model.system(37.0)
     order = 7
     _, damping, stiffness = system.fourier(order)
     drive = box.drive
@@ -74,7 +74,7 @@ def test_fourier_coefficients_against_exact_integration(name):
         drive.pressure_angle,
         drive.inner_radius,
         drive.outer_radius,
-        box.mesh_contact_ratio,
+        model.contact_ratio,
         box.mesh_stiffness,
         box.mesh_damping,
         box.input_stiffness,

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
-from typing import Literal
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,14 +14,12 @@ from compendium.datasets.transverse import describe, growth_map, tongue_sections
 from facegear.design.body import BodyDesign
 from facegear.design.teeth import root_stress, root_thickness, tooth_thickness
 from facegear.floquet.models import replace_parameter
-from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import DEDENDUM, Drive
 from facegear.geometry.kinematics import ContactPath, SkewLine
 from facegear.maps.lobes import CriticalThickness, Lobe, highest_lobes
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import tongues
-from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import Transverse, shape_vector
+from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import integer_at_least, rad_per_s, rpm
 from facegear.support.types import FloatArray
@@ -279,8 +276,6 @@ def lobe_near_tip(
 
 # --- what the text leaves open ------------------------------------------------------------------------------------
 
-Centroid = Literal["by length", "by pairs", "radial", "skew line"]
-
 
 class LongAddendum(Drive):
     """Drive whose pinion has the shaper's addendum of 1.25 modules, so that contact lines reach further."""
@@ -292,55 +287,13 @@ class LongAddendum(Drive):
 
 
 @dataclass(frozen=True)
-class OtherCentroid(Transverse):
-    """Transverse model with one pinion and another way of placing the load.
+class StillPath(ContactPath):
+    """Path of the true contact points without their motion around the gear's axis."""
 
-    Parameters
-    ----------
-    centroid : {"by length", "by pairs", "radial", "skew line"}
-        Mean of the contact points weighted by the lengths of their lines (3-21), or with equal weights; "radial": by
-        length, but without motion around the gear's axis; "skew line": mean radius on (3-22), without that motion.
-    """
-
-    centroid: Centroid = "by length"
-
-    @cached_property
-    def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
-        """Shape vector at the point of the load."""
-        body = replace(self.body, thickness_ratio=0.04)
-        return (_shape_at(body, self.mesh_contact_ratio, self.centroid),)
-
-
-@lru_cache(maxsize=32)
-def _shape_at(body: Body, contact_ratio: float, centroid: Centroid) -> PiecewiseChebyshev:
-    """Shape vector against t/T0; it does not depend on the thickness of the body."""
-    if centroid == "skew line":
-        line = SkewLine(body.drive, contact_ratio)
-
-        def position(piece: int, local: FloatArray) -> tuple[FloatArray, FloatArray]:
-            states = line.pair_states_on_piece(piece, local)
-            radius = states.radius.sum(axis=0) / states.in_contact.sum(axis=0)
-            return radius, np.zeros_like(radius)
-
-        breakpoints, tolerance = line.breakpoints, np.full(len(line.breakpoints), 1e-13)
-    else:
-        path = ContactPath(body.drive, contact_ratio)
-
-        def position(piece: int, local: FloatArray) -> tuple[FloatArray, FloatArray]:
-            states = path.pair_states_on_piece(piece, local)
-            weight = states.in_contact.astype(float) if centroid == "by pairs" else states.length
-            weight = weight / weight.sum(axis=0)
-            angle = (weight * states.angle).sum(axis=0) * (centroid != "radial")
-            return (weight * states.radius).sum(axis=0), angle
-
-        breakpoints, tolerance = path.breakpoints, path.fit_tolerances
-    edges = np.append(breakpoints, 1.0)
-
-    def shape(fraction: FloatArray, piece: int) -> FloatArray:
-        start, end = edges[piece], edges[piece + 1]
-        return shape_vector(body, *position(piece, (2 * fraction - start - end) / (end - start)))
-
-    return PiecewiseChebyshev.fit(shape, breakpoints, tolerance=tolerance)
+    @property
+    def angular_travel(self) -> float:
+        """Return 0: no travel about the gear's axis."""
+        return 0.0
 
 
 def variants(model: Transverse) -> dict[str, Transverse]:
@@ -357,8 +310,8 @@ def variants(model: Transverse) -> dict[str, Transverse]:
     """
     drive, body, load = model.body.drive, model.body, model.load
 
-    def placed(centroid: Centroid) -> Transverse:
-        return OtherCentroid(body, load, contact_ratio=model.contact_ratio, centroid=centroid)
+    def touching(**options: Any) -> Transverse:
+        return replace(model, contact=replace(model.contact, **options))
 
     long = LongAddendum(
         drive.pinion_teeth, drive.gear_teeth, drive.module, drive.pressure_angle, drive.shaft_angle
@@ -367,11 +320,11 @@ def variants(model: Transverse) -> dict[str, Transverse]:
     return {
         "as in chapters 3 and 4": model,
         "pinion addendum 1.25 modules": replace(model, body=replace(body, drive=long)),
-        "tooth pairs weighted equally": placed("by pairs"),
+        "tooth pairs weighted equally": touching(sharing="mean"),
         "base radius in the nominal mass": replace(model, load=lighter),
-        "no motion around the axis": placed("radial"),
-        "skew line": placed("skew line"),
-        "travel with the disk": replace(model, travel="with_disk"),
+        "no motion around the axis": touching(path=StillPath),
+        "skew line": touching(path=SkewLine, sharing="mean"),
+        "travel with the disk": touching(travel="with_disk"),
     }
 
 

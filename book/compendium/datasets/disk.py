@@ -9,8 +9,9 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from facegear.geometry.kinematics import ContactPath
+from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import disk_stiffness, nominal_pinion_mass, reference_stiffness
+from facegear.mechanics.transverse import nominal_pinion_mass
 from facegear.support.labelled import variable
 from facegear.support.parameters import rad_per_s
 

@@ -10,15 +10,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from compendium.datasets.torsional import described
 from facegear.floquet.hsu import resonance_bands
 from facegear.floquet.labels import Combination
 from facegear.floquet.modal import standard_form
-from facegear.floquet.models import Model, value_of
+from facegear.floquet.models import Coordinate, Model, replace_parameter
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.radau import Radau
 from facegear.maps.closing import growth_peaks
 from facegear.maps.tracing import tongues
-from facegear.mechanics.gearboxes import DRIVE, ProportionalGearbox
+from facegear.mechanics.gearboxes import DRIVE
+from facegear.mechanics.torsional import Torsional
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import integer_at_least, keep, nonnegative, positive, rad_per_s, rpm
 from facegear.support.types import FloatArray
@@ -54,6 +56,11 @@ class ScaledModulation:
     def __post_init__(self) -> None:
         keep(self, depth=nonnegative("depth", self.depth))
 
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Those of the model."""
+        return self.model.coordinates
+
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a speed [rad/s]: C̄ + ε (C(t) − C̄), K̄ + ε (K(t) − K̄).
 
@@ -78,19 +85,19 @@ class ScaledModulation:
         )
 
 
-def undamped(model: ProportionalGearbox) -> ProportionalGearbox:
+def undamped(model: Torsional) -> Torsional:
     """Take the dampers out of a gearbox."""
-    return replace(model, mesh_damping=0.0, input_damping=0.0, output_damping=0.0)
+    for name in ("mesh_damping", "input_damping", "output_damping"):
+        model = replace_parameter(model, name, 0.0)
+    return model
 
 
-def hsu_errors(
-    resonances: Sequence[tuple[ProportionalGearbox, Combination]], depths: ArrayLike
-) -> xr.Dataset:
+def hsu_errors(resonances: Sequence[tuple[Torsional, Combination]], depths: ArrayLike) -> xr.Dataset:
     """Borders of undamped tongues from Floquet and from Hsu against the depth of modulation.
 
     Parameters
     ----------
-    resonances : sequence of (ProportionalGearbox, Combination)
+    resonances : sequence of (Torsional, Combination)
         Gearbox, and modes and order of each resonance; dampers are taken out.
     depths : array_like
         ε, ascending.
@@ -163,13 +170,13 @@ def fitted_orders(data: xr.Dataset, name: str, largest_depth: float) -> FloatArr
 
 
 def openings(
-    model: ProportionalGearbox, ranges_rpm: Mapping[Combination, tuple[float, float]], depths: ArrayLike
+    model: Torsional, ranges_rpm: Mapping[Combination, tuple[float, float]], depths: ArrayLike
 ) -> xr.Dataset:
     """Largest growth of the resonances of one mode with damping, against the depth of modulation.
 
     Parameters
     ----------
-    model : ProportionalGearbox
+    model : Torsional
     ranges_rpm : mapping of Combination to tuple of float
         Each resonance of a single mode, and the speeds [rpm] between which it lies at all depths.
     depths : array_like
@@ -212,7 +219,7 @@ def openings(
     )
 
 
-def _hsu_growth(model: ProportionalGearbox, combination: Combination, speed: float) -> tuple[float, float]:
+def _hsu_growth(model: Torsional, combination: Combination, speed: float) -> tuple[float, float]:
     """Growth rate (2-26) of a resonance of one mode without modulation, −f/2, and at depth 1; linear between them."""
     number, s = combination.k, combination.order
     form = standard_form(model.system(speed), s)
@@ -220,12 +227,12 @@ def _hsu_growth(model: ProportionalGearbox, combination: Combination, speed: flo
     return at_rest, form.growth_rate(number, number, "sum", s, 2.0 * float(form.frequencies[number - 1]) / s)
 
 
-def relative_modulation(model: ProportionalGearbox, speed: float, order: int) -> FloatArray:
+def relative_modulation(model: Torsional, speed: float, order: int) -> FloatArray:
     """Amplitude of each harmonic of the stiffness of the first mode over its mean, √(D² + E²)/ω1² (7-16 to 7-18).
 
     Parameters
     ----------
-    model : ProportionalGearbox
+    model : Torsional
     speed : float
         Ω2 [rad/s].
     order : int
@@ -239,7 +246,7 @@ def relative_modulation(model: ProportionalGearbox, speed: float, order: int) ->
     return np.asarray(np.hypot(form.D[:, 0, 0], form.E[:, 0, 0]) / form.frequencies[0] ** 2)
 
 
-def describe(model: ProportionalGearbox) -> str:
+def describe(model: Torsional) -> str:
     """Parameters of a gearbox as text, for the provenance of a figure."""
     names = (
         "correction_factor",
@@ -251,7 +258,4 @@ def describe(model: ProportionalGearbox) -> str:
         "input_damping",
         "output_damping",
     )
-    numbers = ", ".join(f"{name} = {value_of(model, name):.10g}" for name in names)
-    return (
-        f"{numbers}, contact_ratio = {model.mesh_contact_ratio:.10g}, arm = {model.arm}, path = {model.path}"
-    )
+    return described(model, {name: name for name in names})

@@ -14,10 +14,11 @@ from compendium.datasets.inplane import described
 from compendium.datasets.transverse import describe, map_family
 from facegear.design.envelope import critical_power, disk_growth_rate, largest_power, mode_critical_powers
 from facegear.floquet.models import replace_parameter
-from facegear.mechanics.edge_stiffness import edge_load_stiffness
+from facegear.mechanics.disk import disk_modes
+from facegear.mechanics.edge_stiffness import DrivingForce, Following, edge_load_stiffness
 from facegear.mechanics.inplane import EdgeLoadStress
 from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import Transverse, coordinates
+from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import finite_array, rad_per_s, rpm
 from facegear.support.types import FloatArray
@@ -27,11 +28,24 @@ _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 
 def describe_power(model: Transverse) -> str:
     """Parameters of a model with a driving force as text, for the provenance of a figure."""
-    speed = 0.0 if model.power_speed is None else model.power_speed
+    force = driving_force_of(model)
     return (
-        f"{describe(model)}, power_speed = {speed:.10g}, following = {model.following}, "
-        f"stress_harmonics = {model.stress_harmonics}"
+        f"{describe(model)}, power_speed = {force.pinion_speed:.10g}, following = {force.following}, "
+        f"stress_harmonics = {force.harmonics}"
     )
+
+
+def driving_force_of(model: Transverse) -> DrivingForce:
+    """Return the driving force of a model that must have one.
+
+    Raises
+    ------
+    ValueError
+        If it has none.
+    """
+    if model.force is None:
+        raise ValueError("force of the model must be a DrivingForce, got None")
+    return model.force
 
 
 def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
@@ -55,7 +69,7 @@ def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
     follower, dead = edge_load_stiffness(stress), edge_load_stiffness(stress, "dead")
     scale = float(np.abs(follower).max())
     number = np.arange(len(follower))
-    names = [f"({c.nodal_circles},{c.nodal_diameters},{c.wave})" for c in coordinates(body)]
+    names = [f"({c.nodal_circles},{c.nodal_diameters},{c.wave})" for c in disk_modes(body)]
     return xr.Dataset(
         {
             "follower": variable(
@@ -74,14 +88,14 @@ def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
 
 
 def disk_alone(
-    body: Body, power_speed: float, powers: ArrayLike, speeds_rpm: Sequence[float], *, harmonics: int = 5
+    body: Body, pinion_speed: float, powers: ArrayLike, speeds_rpm: Sequence[float], *, harmonics: int = 5
 ) -> xr.Dataset:
     """Growth rate of the disk alone against the power, and its critical power at several speeds.
 
     Parameters
     ----------
     body : Body
-    power_speed : float
+    pinion_speed : float
         Ω1 at the power [rad/s].
     powers : array_like, shape (P,)
         [W].
@@ -99,21 +113,12 @@ def disk_alone(
     """
     levels = finite_array("powers", powers, "W")
 
-    def line(speed: float, kind: str) -> list[float]:
-        return [
-            disk_growth_rate(
-                body,
-                float(power),
-                power_speed,
-                float(rad_per_s(speed)),
-                following="follower" if kind == "follower" else "dead",
-                harmonics=harmonics,
-            )
-            for power in levels
-        ]
+    def line(speed: float, following: Following) -> list[float]:
+        forces = [DrivingForce(power, pinion_speed, following, harmonics) for power in levels.tolist()]
+        return [disk_growth_rate(body, force, float(rad_per_s(speed))) for force in forces]
 
     critical = [
-        critical_power(body, power_speed, float(rad_per_s(v)), harmonics=harmonics) for v in speeds_rpm
+        critical_power(body, pinion_speed, float(rad_per_s(v)), harmonics=harmonics) for v in speeds_rpm
     ]
     both = ("speed_rpm", "power")
     return xr.Dataset(
@@ -125,7 +130,7 @@ def disk_alone(
             "critical": variable("speed_rpm", critical, "Critical power of the disk alone", "W", rtol=1e-8),
             "mode_critical": variable(
                 ("circles", "diameters"),
-                mode_critical_powers(body, power_speed),
+                mode_critical_powers(body, pinion_speed),
                 "Critical power of each mode, first order",
                 "W",
                 rtol=1e-9,
@@ -137,7 +142,7 @@ def disk_alone(
             "circles": np.arange(body.nodal_circles + 1),
             "diameters": np.arange(body.nodal_diameters + 1),
         },
-        attrs={"parameters": f"{described(body, power_speed=power_speed)}, harmonics = {harmonics}"},
+        attrs={"parameters": f"{described(body, power_speed=pinion_speed)}, harmonics = {harmonics}"},
     )
 
 
@@ -149,7 +154,7 @@ def power_maps(
     Parameters
     ----------
     model : Transverse
-        With a `power_speed`.
+        With a driving force.
     powers : sequence of float
         [W].
     speeds_rpm, values : array_like
@@ -186,8 +191,8 @@ def mean_growth_map(model: Transverse, speeds_rpm: ArrayLike, values: ArrayLike)
     ValueError
         If the model has the total rate, whose mean is not that of a load at rest.
     """
-    if model.rate != "frozen":
-        raise ValueError(f"model must have the rate 'frozen', got {model.rate!r}")
+    if model.contact.rate != "frozen":
+        raise ValueError(f"model must have the rate 'frozen', got {model.contact.rate!r}")
     speeds, heights = finite_array("speeds_rpm", speeds_rpm, "rpm"), finite_array("values", values)
     models = [replace_parameter(model, "stiffness", value) for value in heights.tolist()]
     # The mean of φφᵀ is the same at every speed.
@@ -208,7 +213,8 @@ def mean_growth_map(model: Transverse, speeds_rpm: ArrayLike, values: ArrayLike)
         {"growth_rate": _growth(("stiffness", "speed_rpm"), rows, "Growth rate of the mean system")},
         coords={"stiffness": heights, "speed_rpm": speeds},
         attrs={
-            "parameters": f"{describe_power(model)}, power = {model.power}, mean system, swept = stiffness"
+            "parameters": f"{describe_power(model)}, power = {driving_force_of(model).power}, mean system, "
+            "swept = stiffness"
         },
     )
 
@@ -229,7 +235,7 @@ def power_envelope(
     Parameters
     ----------
     models : dict of str to Transverse
-        Name of each variant, and the variant with a `power_speed`.
+        Name of each variant, and the variant with a driving force.
     parameter : str
         Swept parameter.
     values : array_like, shape (V,)

@@ -7,7 +7,7 @@ columns are traced by :func:`facegear.maps.tracing.borders`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -18,13 +18,15 @@ from scipy.optimize import minimize_scalar
 
 from facegear.floquet.hsu import SpeedBand, band_speeds
 from facegear.floquet.modal import ModalExpansion, standard_form
-from facegear.floquet.models import replace_parameter
+from facegear.floquet.models import replace_parameter, value_of
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.radau import Radau
+from facegear.geometry.kinematics import CentroidPath, ContactPath, SkewLine
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import borders, tongues
-from facegear.mechanics.gearboxes import HIGHEST_SPEED_RPM, ProportionalGearbox, TorsionalFigure
+from facegear.mechanics.gearboxes import HIGHEST_SPEED_RPM, TorsionalFigure
+from facegear.mechanics.torsional import Torsional
 from facegear.support.labelled import filled_labels, filled_rows, text, variable
 from facegear.support.parameters import finite_array, integer_at_least, rad_per_s, rpm
 from facegear.support.types import FloatArray
@@ -41,23 +43,30 @@ _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
 _HSU_POINTS = 9
 # Natural frequencies further apart than this ratio do not know of one another.
 _NEIGHBOURS = 3.0
+# What stored arrays call the paths of contact.
+_PATHS: Mapping[Any, str] = {SkewLine: "skew_line", ContactPath: "contact_path", CentroidPath: "centroid"}
 
 
-def describe(model: ProportionalGearbox) -> str:
+def describe(model: Torsional) -> str:
     """Parameters of a gearbox as text, for the provenance of a figure."""
-    values = {
-        "correction_factor": model.correction_factor,
-        "J2/J1": model.gear_inertia,
-        "Jo/J1": model.load_inertia,
-        "k1/km": model.input_stiffness,
-        "k2/km": model.output_stiffness,
-        "cm/km_s": model.mesh_damping,
-        "c1/k1_s": model.input_damping,
-        "c2/k2_s": model.output_damping,
-        "contact_ratio": model.mesh_contact_ratio,
+    names = {
+        "correction_factor": "correction_factor",
+        "gear_inertia": "J2/J1",
+        "load_inertia": "Jo/J1",
+        "input_stiffness": "k1/km",
+        "output_stiffness": "k2/km",
+        "mesh_damping": "cm/km_s",
+        "input_damping": "c1/k1_s",
+        "output_damping": "c2/k2_s",
     }
-    numbers = ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
-    return f"{numbers}, arm = {model.arm}, path = {model.path}"
+    return described(model, names)
+
+
+def described(model: Torsional, names: Mapping[str, str]) -> str:
+    """Parameters of a gearbox under the names given, and its contact, as text."""
+    numbers = ", ".join(f"{name} = {value_of(model, field):.10g}" for field, name in names.items())
+    contact = f"contact_ratio = {model.contact_ratio:.10g}, arm = {model.arm}"
+    return f"{numbers}, {contact}, path = {_PATHS[model.contact.path]}"
 
 
 def axis_values(figure: TorsionalFigure, count: int) -> FloatArray:
@@ -114,7 +123,7 @@ def natural_frequencies(figure: TorsionalFigure, count: int = 201) -> xr.Dataset
             veering[pair], closest[pair] = np.exp(found.x), found.fun - 1.0
     modes = np.arange(1, len(frequencies) + 1)
     both = ("mode", figure.parameter)
-    speeds = rpm(frequencies / figure.model().gearbox.drive.gear_teeth)
+    speeds = rpm(frequencies / figure.model().drive.gear_teeth)
     return xr.Dataset(
         {
             "frequency": variable(
@@ -139,15 +148,15 @@ def natural_frequencies(figure: TorsionalFigure, count: int = 201) -> xr.Dataset
 
 def _frequencies(figure: TorsionalFigure, value: float) -> FloatArray:
     """Natural frequencies at rest, shape (3,) [rad/s]."""
-    return replace_parameter(figure.model(), figure.parameter, value).torsional.natural_frequencies()
+    return replace_parameter(figure.model(), figure.parameter, value).natural_frequencies()
 
 
-def moment_arms(model: ProportionalGearbox, count: int = 201) -> xr.Dataset:
+def moment_arms(model: Torsional, count: int = 201) -> xr.Dataset:
     """Moment arms of the mesh force about the face-gear axis over two mesh periods, as printed and as conjugate.
 
     Parameters
     ----------
-    model : ProportionalGearbox
+    model : Torsional
     count : int, optional
         Instants of one mesh period.
 
@@ -159,9 +168,9 @@ def moment_arms(model: ProportionalGearbox, count: int = 201) -> xr.Dataset:
     """
     count = integer_at_least("count", count, 2)
     time = 2.0 * (np.arange(2 * count) + 0.5) / (2 * count)
-    arms = np.stack([-shape(time)[:, 1] for shape in model.torsional.shapes])
+    arms = np.stack([-shape(time)[:, 1] for shape in model.shapes])
     in_mesh = arms > 0.0
-    drive = model.gearbox.drive
+    drive = model.drive
     return xr.Dataset(
         {
             "printed": variable(
@@ -177,12 +186,12 @@ def moment_arms(model: ProportionalGearbox, count: int = 201) -> xr.Dataset:
     )
 
 
-def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
+def growth_row(model: Torsional, speeds_rpm: ArrayLike) -> FloatArray:
     """Growth rates of one gearbox over speed.
 
     Parameters
     ----------
-    model : ProportionalGearbox
+    model : Torsional
     speeds_rpm : array_like, shape (S,)
         Speeds of the face gear [rpm].
 
@@ -194,7 +203,7 @@ def growth_row(model: ProportionalGearbox, speeds_rpm: ArrayLike) -> FloatArray:
     speeds = np.asarray(rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm")))
     # A little further than asked for: a single speed is a row as well.
     curve = MultiplierCurve.of(model, 0.999 * float(speeds.min()), 1.001 * float(speeds.max()), METHOD)
-    per_second = speeds * model.gearbox.drive.gear_teeth / (2 * np.pi)
+    per_second = speeds * model.drive.gear_teeth / (2 * np.pi)
     return np.asarray(np.log(curve.spectral_radii(speeds)) * per_second, dtype=float)
 
 
@@ -213,7 +222,7 @@ def growth_map(
     jobs : int, optional
         Number of processes, as joblib's ``n_jobs``; -1 for all processors.
     **options
-        Fields of the gearbox that replace those of the caption, such as ``arm="conjugate"``.
+        As for :class:`facegear.mechanics.torsional.Torsional`, such as ``arm="conjugate"``.
 
     Returns
     -------
@@ -311,12 +320,12 @@ def printed_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
     return standard_form(system, order).expansion()
 
 
-def hsu_bands(model: ProportionalGearbox, speeds_rpm: tuple[float, float]) -> tuple[SpeedBand, ...]:
+def hsu_bands(model: Torsional, speeds_rpm: tuple[float, float]) -> tuple[SpeedBand, ...]:
     """Hsu's bands of speed as the dissertation has them: each pair of frequencies alone (7-16 to 7-19, 2-26).
 
     Parameters
     ----------
-    model : ProportionalGearbox
+    model : Torsional
     speeds_rpm : tuple of float
         Lowest and highest speed of the face gear [rpm].
     """
@@ -326,7 +335,7 @@ def hsu_bands(model: ProportionalGearbox, speeds_rpm: tuple[float, float]) -> tu
     )
 
 
-def block_bands(model: ProportionalGearbox, speeds_rpm: tuple[float, float]) -> tuple[SpeedBand, ...]:
+def block_bands(model: Torsional, speeds_rpm: tuple[float, float]) -> tuple[SpeedBand, ...]:
     """First-order bands of speed when further frequencies in resonance join a pair; as :func:`hsu_bands`."""
     speeds = (float(rad_per_s(speeds_rpm[0])), float(rad_per_s(speeds_rpm[1])))
     return band_speeds(model, speeds, order=HIGHEST_ORDER, points=_HSU_POINTS, expand=printed_expansion)

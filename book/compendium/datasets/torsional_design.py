@@ -11,14 +11,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.modulation import describe, relative_modulation
-from facegear.floquet.models import Model
+from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.floquet.multipliers import AdaptiveMagnus
 from facegear.floquet.radau import Radau
-from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.kinematics import CentroidPath, ContactPath
 from facegear.maps.closing import GrowthPeaks, growth_peaks
 from facegear.maps.sensitivity import border_derivatives, parameter_value
 from facegear.maps.tracing import Tongue, tongues
-from facegear.mechanics.gearboxes import DRIVE, ProportionalGearbox
+from facegear.mechanics.gearboxes import DRIVE
+from facegear.mechanics.torsional import Torsional
 from facegear.support.labelled import filled_labels, filled_rows, text, variable
 from facegear.support.parameters import integer_at_least, rad_per_s, rpm
 from facegear.support.types import FloatArray
@@ -36,34 +37,36 @@ _DERIVATIVES = AdaptiveMagnus(1e-9)
 # --- what the text takes for granted ------------------------------------------------------------------------------
 
 
-def variants(model: ProportionalGearbox) -> dict[str, ProportionalGearbox]:
+def variants(model: Torsional) -> dict[str, Torsional]:
     """List the gearbox as printed, and with the arm, the path or the contact ratio taken differently."""
     tregold, geometric = DRIVE.contact_ratio, DRIVE.geometric_contact_ratio
     softer = tregold / geometric
+    slow = replace(model, contact=replace(model.contact, contact_ratio=geometric))
+    # Shafts keep their stiffness, which is given as a multiple of that of the mesh.
+    soft = slow
+    for name, factor in (
+        ("correction_factor", softer),
+        ("input_stiffness", 1.0 / softer),
+        ("output_stiffness", 1.0 / softer),
+    ):
+        soft = replace_parameter(soft, name, value_of(model, name) * factor)
     return {
         "as printed": model,
         "conjugate arm": replace(model, arm="conjugate"),
-        "true contact points": replace(model, path="contact_path"),
-        "contact centroid": replace(model, path="centroid"),
-        "geometric contact ratio": replace(model, contact_ratio=geometric),
-        # Shafts keep their stiffness, which is given as a multiple of that of the mesh.
-        "the same, softer pairs": replace(
-            model,
-            contact_ratio=geometric,
-            correction_factor=model.correction_factor * softer,
-            input_stiffness=model.input_stiffness / softer,
-            output_stiffness=model.output_stiffness / softer,
-        ),
-        "geometric, conjugate arm": replace(model, contact_ratio=geometric, arm="conjugate"),
+        "true contact points": replace(model, contact=replace(model.contact, path=ContactPath)),
+        "contact centroid": replace(model, contact=replace(model.contact, path=CentroidPath)),
+        "geometric contact ratio": slow,
+        "the same, softer pairs": soft,
+        "geometric, conjugate arm": replace(slow, arm="conjugate"),
     }
 
 
-def variant_tongues(models: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, float]) -> xr.Dataset:
+def variant_tongues(models: Mapping[str, Torsional], speeds_rpm: tuple[float, float]) -> xr.Dataset:
     """Tongues of several variants of a gearbox.
 
     Parameters
     ----------
-    models : mapping of str to ProportionalGearbox
+    models : mapping of str to Torsional
         From :func:`variants`.
     speeds_rpm : tuple of float
         Lowest and highest speed [rpm].
@@ -190,12 +193,12 @@ PARAMETERS = (
 SYMBOLS = ("$J_1$", "$J_2$", "$J_o$", "$k_m$", "$k_1$", "$k_2$", "$c_m$", "$c_1$", "$c_2$")
 
 
-def levers(cases: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, float]) -> xr.Dataset:
+def levers(cases: Mapping[str, Torsional], speeds_rpm: tuple[float, float]) -> xr.Dataset:
     """Sensitivity of every tongue to each parameter of the gearbox.
 
     Parameters
     ----------
-    cases : mapping of str to ProportionalGearbox
+    cases : mapping of str to Torsional
     speeds_rpm : tuple of float
         Lowest and highest speed [rpm]; tongues cut off there are left out.
 
@@ -210,8 +213,9 @@ def levers(cases: Mapping[str, ProportionalGearbox], speeds_rpm: tuple[float, fl
     names: list[tuple[str, str]] = []
     borders_found: list[tuple[float, float]] = []
     widths, centres = [], []
-    for case, gearbox in cases.items():
-        model = gearbox.torsional
+    for case, given in cases.items():
+        # Its own parameters, in SI: what the ratios of the captions tie together varies one by one.
+        model = replace(given, gearbox=given.gearbox.in_si)
         for tongue in tongues(model, low, high, method=_METHOD):
             if tongue.lower <= low or tongue.upper >= high:
                 continue
@@ -251,7 +255,7 @@ def _border_changes(model: Model, tongue: Tongue) -> FloatArray:
 
 
 def closing(
-    model: ProportionalGearbox,
+    model: Torsional,
     parameter: str,
     dampings: ArrayLike,
     ranges_rpm: Mapping[str, tuple[float, float]],
@@ -260,7 +264,7 @@ def closing(
 
     Parameters
     ----------
-    model : ProportionalGearbox
+    model : Torsional
     parameter : str
         ``"input_damping"`` or ``"output_damping"`` [s].
     dampings : array_like

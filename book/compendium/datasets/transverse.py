@@ -21,7 +21,8 @@ from facegear.floquet.modal import modal_expansion
 from facegear.floquet.models import replace_parameter
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import Tongue, borders, tongues
-from facegear.mechanics.transverse import Transverse, reference_stiffness
+from facegear.mechanics.disk import reference_stiffness
+from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import filled_labels, filled_rows, text, variable
 from facegear.support.parameters import integer_at_least, rad_per_s, rpm
 
@@ -44,10 +45,10 @@ def describe(model: Transverse) -> str:
         "stiffness": load.stiffness,
         "damping_s": load.damping,
         "mass": load.mass,
-        "contact_ratio": model.mesh_contact_ratio,
+        "contact_ratio": model.contact_ratio,
     }
     numbers = ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
-    return f"{numbers}, pinion_angles_deg = {angles}, rate = {model.rate}, travel = {model.travel}"
+    return f"{numbers}, pinion_angles_deg = {angles}, rate = {model.contact.rate}, travel = {model.contact.travel}"
 
 
 def growth_map(

@@ -10,8 +10,9 @@ from facegear.design.body import BodyDesign
 from facegear.design.teeth import constant_diametral_pitch, constant_pitch_radius, root_stress
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.lobes import CriticalThickness, Lobe
+from facegear.mechanics.disk import disk_modes, shape_vector
 from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import Transverse, coordinates, shape_vector
+from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
 
 DRIVE = constant_diametral_pitch(25)
@@ -58,15 +59,6 @@ def test_family_of_bodies():
     assert data["label"].values.tolist() == [["(1+1)/1"] * 2] * 2
 
 
-def test_centroid_by_length_is_the_model_s_own():
-    """The variants and the model come to the contact centroid on different ways."""
-    other = design_arrays.OtherCentroid(MODEL.body, MODEL.load)
-    x = np.linspace(0.001, 0.999, 57)
-    assert other.shapes[0](x) == pytest.approx(
-        MODEL.shapes[0](x), rel=1e-9, abs=1e-10 * MODEL.shapes[0].largest
-    )
-
-
 def test_variants_differ_where_they_say():
     found = design_arrays.variants(MODEL)
     system = {name: model.system(50.0) for name, model in found.items()}
@@ -75,7 +67,7 @@ def test_variants_differ_where_they_say():
     assert mass == pytest.approx(own.mass * np.cos(DRIVE.pressure_angle) ** 2, rel=1e-12)
     x = np.linspace(0.01, 0.99, 23)
     radial = system["no motion around the axis"].loads[0].shape(x)
-    sines = [number for number, each in enumerate(coordinates(MODEL.body)) if each.wave == "sin"]
+    sines = [number for number, each in enumerate(disk_modes(MODEL.body)) if each.wave == "sin"]
     assert not radial[:, sines].any()
     assert own.shape(x)[:, sines].all()
     long = found["pinion addendum 1.25 modules"].body.drive

@@ -13,13 +13,14 @@ from facegear.floquet.modal import modal_expansion
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
 from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES
-from facegear.mechanics.edge_stiffness import driving_force
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.inplane import EdgeLoadStress
 from facegear.support.parameters import rad_per_s, watt
 from tests.figures import check_round_trip, texts
 
 PINION_SPEED = float(rad_per_s(5000.0))
-MODEL = FIGURES["4.4a"].model(power=0.0, power_speed=PINION_SPEED)
+MODEL = FIGURES["4.4a"].model(force=DrivingForce(0.0, PINION_SPEED))
 
 
 def test_harmonics_are_those_of_the_field(tmp_path):
@@ -103,11 +104,11 @@ def test_maps_hold_growth_rates_of_single_cells(tmp_path):
     assert "(b) 300 hp" in texts(draw.power_maps(data, dict.fromkeys(powers, mean)))
     assert "Case I, 0 hp" in texts(draw.compared_clocks({"Case I": data}))
     with pytest.raises(ValueError, match="rate 'frozen'"):
-        power_arrays.mean_growth_map(replace(loaded, rate="total"), speeds, heights)
+        power_arrays.mean_growth_map(replace(loaded, contact=Contact(rate="total")), speeds, heights)
 
 
 def test_envelope_of_two_variants(tmp_path):
-    slow = replace(MODEL, contact_ratio=CASE_1.drive.geometric_contact_ratio)
+    slow = replace(MODEL, contact=Contact(contact_ratio=CASE_1.drive.geometric_contact_ratio))
     data = power_arrays.power_envelope(
         {"Tregold": MODEL, "true sweep": slow}, "stiffness", [1.0], (830.0, 900.0)
     )
@@ -126,4 +127,6 @@ def test_envelope_of_two_variants(tmp_path):
 def test_force_of_a_caption():
     """800 hp at 5000 rpm of the pinion of Case II."""
     expected = 800 * 745.69987 / (5000 * np.pi / 30) / (31 * 3.175e-3 / 2)
-    assert driving_force(CASE_2, float(watt(800.0)), PINION_SPEED) == pytest.approx(expected, rel=1e-9)
+    assert DrivingForce(float(watt(800.0)), PINION_SPEED).newtons(CASE_2.drive) == pytest.approx(
+        expected, rel=1e-9
+    )

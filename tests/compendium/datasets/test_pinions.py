@@ -13,6 +13,7 @@ from facegear.design.cancellation import Wave, WavePair
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
 from facegear.mechanics.cases import EXAMPLE_A, EXAMPLE_B
+from facegear.mechanics.contact import Contact
 from facegear.support import labelled
 from facegear.support.parameters import rad_per_s
 from tests.figures import check_round_trip, texts
@@ -59,9 +60,9 @@ def test_phase_maps_are_rows_of_the_angle_map(chart, tmp_path):
 def test_another_tooth_count_has_its_own_contact_ratio():
     model = arrays.with_teeth(EXAMPLE_B, 33)
     assert model.body.drive.gear_teeth == 165
-    assert model.mesh_contact_ratio == model.body.drive.contact_ratio != EXAMPLE_B.mesh_contact_ratio
-    chosen = arrays.with_teeth(replace(EXAMPLE_B, contact_ratio=2.0), 33)
-    assert chosen.mesh_contact_ratio == 2.0
+    assert model.contact_ratio == model.body.drive.contact_ratio != EXAMPLE_B.contact_ratio
+    chosen = arrays.with_teeth(replace(EXAMPLE_B, contact=Contact(contact_ratio=2.0)), 33)
+    assert chosen.contact_ratio == 2.0
     odd = replace(EXAMPLE_A.body.drive, gear_teeth=131)
     uneven = replace(EXAMPLE_A, body=replace(EXAMPLE_A.body, drive=odd))
     with pytest.raises(ValueError, match="pinion_teeth"):

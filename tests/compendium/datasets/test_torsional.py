@@ -46,7 +46,7 @@ def test_map_has_the_unstable_cells_of_dop853():
     figure = FIGURES["7.13a"]
     chart = arrays.growth_map(figure, [571.0, 600.0, 650.0], [1e-6, 2e-5], jobs=1)
     for i, value in enumerate(chart["output_damping"].values.tolist()):
-        numbers = numbers_of(replace_parameter(figure.model(), "output_damping", value).gearbox)
+        numbers = numbers_of(replace_parameter(figure.model(), "output_damping", value))
         for j, speed in enumerate(chart["speed_rpm"].values.tolist()):
             truth = math.log(spectral_radius(numbers, speed)) * speed * DRIVE.gear_teeth / 60
             assert float(chart["growth_rate"][i, j]) == pytest.approx(truth, abs=1e-6)
@@ -72,7 +72,7 @@ def test_resonances_of_figure_7_13a():
 
 def test_borders_are_where_dop853_finds_multipliers_of_one():
     lower, upper = arrays.intervals(table_7_13a(), "floquet")["(1+1)/2"]
-    numbers = numbers_of(replace_parameter(FIGURES["7.13a"].model(), "output_damping", 1e-6).gearbox)
+    numbers = numbers_of(replace_parameter(FIGURES["7.13a"].model(), "output_damping", 1e-6))
     for border, outward in ((lower, -1), (upper, 1)):
         # 0.01 rpm on either side of a border
         assert (
@@ -97,8 +97,8 @@ def test_natural_frequencies_and_veering():
     assert np.isnan(float(data["veering"][0]))
     assert data["natural_speed"].values == pytest.approx(data["frequency"].values * 60 / 107)
     # Beyond the veering the highest mode is the pinion on k1 and the mesh.
-    box = FIGURES["7.8b"].model().gearbox
-    pinion = box.input_stiffness + box.mesh_stiffness * box.mesh_contact_ratio * DRIVE.base_radius**2
+    box = FIGURES["7.8b"].gearbox.in_si
+    pinion = box.input_stiffness + box.mesh_stiffness * DRIVE.contact_ratio * DRIVE.base_radius**2
     alone = math.sqrt(pinion / box.pinion_inertia) / (2 * math.pi)
     assert float(data["frequency"][2, -1]) == pytest.approx(alone, rel=1e-3)
 

@@ -1,0 +1,206 @@
+"""Where the teeth of a pinion press, and when: from a path of contact points to shape vectors.
+
+A path (:class:`facegear.geometry.kinematics.ContactPath`, :class:`~facegear.geometry.kinematics.SkewLine`, or any
+class of the kind) says where each tooth pair touches at each instant of its mesh time. `Contact` puts it on a clock,
+says how the pairs in mesh share the load, and gives each load's place against t/T0; a model turns places into its own
+shape vectors, and pinions at other angles into rotated and shifted ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+
+from facegear.floquet.periodic import Rate
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import ContactPath, SkewLine, TimedPairs, checked_contact_ratio
+from facegear.support.parameters import finite, keep, one_of
+from facegear.support.types import FloatArray
+
+Travel = Literal["printed", "with_disk"]
+Sharing = Literal["centroid", "mean", "each"]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How the tooth pairs of a mesh touch and share the load.
+
+    Parameters
+    ----------
+    path : class
+        Law of the contact points, called with a drive and a contact ratio: :class:`ContactPath`, the midpoints of the
+        true contact lines; :class:`SkewLine`, the straight line of (3-22); or another
+        :class:`facegear.geometry.kinematics.TimedPairs`.
+    sharing : {"centroid", "mean", "each"}
+        One load at the mean contact point, weighted by the lengths of the contact lines (3-21) or with equal weights;
+        or one load for each tooth pair, numbered by age, there while the pair is in mesh.
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more, and 1.001 or more where total rate follows a mean
+        point. Default None: Tregold's, as printed, that of whatever drive there is; `drive.geometric_contact_ratio` is
+        that of the true sweep. A number stays when the drive is replaced.
+    rate : {"frozen", "total"}
+        Whether a spring, damper or mass at the contact follows ∂w/∂t at the contact point ("frozen", as printed in
+        4-1) or the displacement under the moving point ("total", chapter 7).
+    travel : {"printed", "with_disk"}
+        Whether the disk turns towards growing θ while the contact turns towards falling θ, (4-1) and section
+        3.6 as printed, or contact, disk and the order in which a tooth meets the pinions agree ("with_disk":
+        all angles against the disk's rotation). Torsion knows no angles: there it changes nothing.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range, or the sharing asks for what the path does not have.
+
+    Examples
+    --------
+    >>> contact = Contact(contact_ratio=1.6)
+    >>> [place] = contact.places(Drive(26, 130, 3.175e-3))
+    >>> place.position(0.0).shape
+    (2,)
+    """
+
+    path: Callable[[Drive, float], TimedPairs] = ContactPath
+    sharing: Sharing = "centroid"
+    contact_ratio: float | None = None
+    rate: Rate = "frozen"
+    travel: Travel = "printed"
+
+    def __post_init__(self) -> None:
+        if not callable(self.path):
+            raise TypeError(f"path must be a class of contact points such as ContactPath, got {self.path!r}")
+        one_of("sharing", self.sharing, ("centroid", "mean", "each"))
+        one_of("rate", self.rate, ("frozen", "total"))
+        one_of("travel", self.travel, ("printed", "with_disk"))
+        if self.contact_ratio is not None:
+            keep(self, contact_ratio=finite("contact_ratio", self.contact_ratio))
+
+    @property
+    def sense(self) -> float:
+        """Sign that `travel` gives all angles."""
+        return -1.0 if self.travel == "with_disk" else 1.0
+
+    def ratio(self, drive: Drive) -> float:
+        """Mesh periods that a tooth pair of a drive stays in mesh: `contact_ratio`, else Tregold's (3-23 to 3-26).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If it is not valid for the drive.
+        """
+        return checked_contact_ratio(drive, self.contact_ratio)
+
+    def require(self, drive: Drive) -> None:
+        """Refuse a drive whose contact is not computed with these settings.
+
+        Raises
+        ------
+        ValueError
+            Saying why: the contact ratio is out of range, the path has no lengths to share by, or total rate would
+            follow a point without a finite speed.
+        """
+        path = self.path(drive, self.ratio(drive))
+        if self.sharing == "centroid" and not path.has_lengths:
+            raise ValueError(
+                f'sharing must be "mean" or "each" for {type(path).__name__}, which has no contact lines to weight by, '
+                f"got {self.sharing!r}"
+            )
+        if self.rate == "total":
+            path.require_followable("rate = 'total'", self.sharing != "each")
+
+    def places(self, drive: Drive) -> tuple[LoadPlace, ...]:
+        """Place of each load against t/T0 for a pinion at angle 0, computed once for each drive.
+
+        Parameters
+        ----------
+        drive : Drive
+
+        Returns
+        -------
+        tuple of LoadPlace
+            One load, or one for each tooth pair.
+        """
+        return _places(self.path, self.sharing, drive, self.ratio(drive))
+
+
+CENTROID = Contact()
+"""Contact as chapters 4 to 6 have it: at the centroid of the contact lines (3-21), frozen rate."""
+
+SKEW_LINE = Contact(path=SkewLine, sharing="each", rate="total")
+"""Contact as chapter 7 has it: each tooth pair on the skew line (3-22), total rate."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoadPlace:
+    """Where one load of a mesh is.
+
+    Attributes
+    ----------
+    position : PiecewiseChebyshev
+        r over the outer radius [-] and θ [rad] against t/T0; 0 while there is no load.
+    in_contact : tuple of bool
+        Whether there is a load, one for each piece.
+    tolerances : ndarray, shape (pieces,)
+        Relative errors that a fit along the path may have [-].
+    """
+
+    position: PiecewiseChebyshev
+    in_contact: tuple[bool, ...]
+    tolerances: FloatArray
+
+    def shape(self, vector: Callable[[FloatArray, FloatArray], FloatArray]) -> PiecewiseChebyshev:
+        """Shape vector along the path, zero while there is no load.
+
+        Parameters
+        ----------
+        vector : callable
+            r over the outer radius (m,) and θ (m,) to the shape vector there, (m, n).
+
+        Returns
+        -------
+        PiecewiseChebyshev
+            n components, one series for each smooth piece of the period.
+        """
+        # Where there is no load the position means nothing.
+        first = self.position(self.position.breakpoints[[self.in_contact.index(True)]])
+        components = vector(*first.T).shape[-1]
+
+        def along(fraction: FloatArray, piece: int) -> FloatArray:
+            if not self.in_contact[piece]:
+                return np.zeros((fraction.size, components))
+            return vector(*np.moveaxis(self.position(fraction), -1, 0))
+
+        return PiecewiseChebyshev.fit(along, self.position.breakpoints, tolerance=self.tolerances)
+
+
+@lru_cache(maxsize=256)
+def _places(
+    kind: Callable[[Drive, float], TimedPairs], sharing: Sharing, drive: Drive, contact_ratio: float
+) -> tuple[LoadPlace, ...]:
+    path = kind(drive, contact_ratio)
+    edges = np.append(path.breakpoints, 1.0)
+    middles = (edges[:-1] + edges[1:]) / 2.0
+    each = sharing == "each"
+
+    def place(load: int) -> LoadPlace:
+        in_contact = tuple((middles + load < contact_ratio).tolist()) if each else (True,) * middles.size
+
+        def position(fraction: FloatArray, piece: int) -> FloatArray:
+            local = (2.0 * fraction - edges[piece] - edges[piece + 1]) / (edges[piece + 1] - edges[piece])
+            states = path.pair_states_on_piece(piece, np.clip(local, -1.0, 1.0))
+            if each:
+                radius, angle = states.radius[load], states.angle[load]
+            else:
+                weight = states.length if sharing == "centroid" else states.in_contact.astype(float)
+                weight = weight / weight.sum(axis=0)
+                radius, angle = (weight * states.radius).sum(axis=0), (weight * states.angle).sum(axis=0)
+            return np.stack([radius / drive.outer_radius, angle], axis=-1)
+
+        fitted = PiecewiseChebyshev.fit(position, path.breakpoints, tolerance=path.fit_tolerances)
+        return LoadPlace(fitted, in_contact, path.fit_tolerances)
+
+    return tuple(place(load) for load in range(path.pairs if each else 1))
