@@ -20,7 +20,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from facegear.floquet.multiplier_curves import method_for
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.peaks import growth_peak
 from facegear.maps.tracing import Tongue, tongues
@@ -275,18 +274,17 @@ def _tip(
     tolerance: float,
 ) -> PowerLimit:
     """Follow a tongue down to its tip: in turn the power at which its speed is stable, and the worst speed there."""
-    method = method_for(at(unstable), *speed_range)
     speed, power = tongue.peak, unstable
 
     def growth(value: float) -> float:
-        return growth_rate(at(value).system(speed), method)
+        return growth_rate(at(value).system(speed))
 
     for _ in range(_MOST_TURNS):
         above = power
         power = float(brentq(growth, stable, above, rtol=tolerance / 4))
         if power > above * (1 - tolerance):
             return PowerLimit(power, speed, tongue.label)
-        speed, value = growth_peak(at(power), method, speed, speed_range, **_WINDOWS)
+        speed, value = growth_peak(at(power), None, speed, speed_range, **_WINDOWS)
         if growth(stable) >= 0.0 or value <= 0.0:
             return PowerLimit(power, speed, tongue.label)
     raise ArithmeticError(f"the tip of tongue {tongue.label} was not found in {_MOST_TURNS} turns")

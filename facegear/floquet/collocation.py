@@ -307,6 +307,15 @@ def _at_nodes(
     return np.stack([np.stack([function(fractions) for function in row], axis=-2) for row in functions])
 
 
+def mobilities(systems: Sequence[PeriodicSystem]) -> FloatArray:
+    """Return the largest φᵀM⁻¹φ of each load, at sampled instants, shape (V, p)."""
+    samples = np.linspace(0.0, 1.0, 16, endpoint=False)
+    shapes = _at_nodes(systems, lambda load: load.shape, samples)
+    mass = np.stack([system.mass for system in systems])[:, None]
+    moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
+    return np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
+
+
 class FreeMotion:
     """A system prepared for many values of its load parameters up to those of `column`, or many systems for one each.
 
@@ -340,12 +349,7 @@ class FreeMotion:
     ) -> None:
         self.systems = systems
         self.modes = FreeModes.of_all(systems)
-        samples = np.linspace(0.0, 1.0, 16, endpoint=False)
-        shapes = _at_nodes(systems, lambda load: load.shape, samples)
-        mass = np.stack([system.mass for system in systems])[:, None]
-        moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
-        self.mobility = (shapes * moved).sum(axis=-1).max(axis=1)
-        stiffest = (column.stiffness * self.mobility).sum(axis=-1).max()
+        stiffest = (column.stiffness * mobilities(systems)).sum(axis=-1).max()
         periods = np.array([system.period for system in systems])
         frequencies = np.abs(self.modes.eigenvalues).max(axis=-1)
         angle = float((np.hypot(frequencies, np.sqrt(stiffest)) * periods).max())
@@ -483,15 +487,6 @@ def chain(steps: FloatArray) -> FloatArray:
         pairs = steps[:, 1:even:2] @ steps[:, 0:even:2]
         steps = np.concatenate([pairs, steps[:, even:]], axis=1)
     return steps[:, 0]
-
-
-def is_suitable(system: PeriodicSystem) -> bool:
-    """Whether contact-force collocation applies: oscillating free modes, contact forces it resolves."""
-    try:
-        FreeMotion([system], LoadColumn.of(system))
-    except UnsuitableSystemError:
-        return False
-    return True
 
 
 def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) -> FloatArray:

@@ -15,15 +15,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from facegear.floquet.collocation import UnsuitableSystemError, is_suitable
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    Collocation,
     Method,
     disturbed,
     rounding_error,
     transition_matrices,
+    with_method,
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries, lobatto_coefficients
@@ -151,35 +149,48 @@ class MultiplierCurve:
     ) -> MultiplierCurve:
         """Interpolate the transition matrices of a model between two speeds [rad/s].
 
-        `looked_at` is told the number of matrices whenever some have been computed or interpolated.
+        The method is as :func:`facegear.floquet.multipliers.with_method` says, one for all speeds. `looked_at` is told
+        the number of matrices whenever some have been computed or interpolated.
 
         Raises
         ------
         ArithmeticError
             If they do not vary smoothly with speed.
         """
+        return with_method(
+            method, lambda chosen: cls._interpolated(model, lowest_speed, highest_speed, chosen, looked_at)
+        )
+
+    @classmethod
+    def _interpolated(
+        cls,
+        model: Model,
+        lowest_speed: float,
+        highest_speed: float,
+        method: Method,
+        looked_at: Callable[[int], object],
+    ) -> MultiplierCurve:
         scale = Family([model.system(highest_speed)]).scale
         inverse = np.linalg.inv(scale)
-        chosen = method_for(model, lowest_speed, highest_speed) if method is None else method
 
         def matrices(slowness: FloatArray) -> FloatArray:
             found = np.empty((slowness.size, *scale.shape))
             for part in _neighbours(slowness):
                 systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
-                found[part] = _family_matrices(systems, chosen)
+                found[part] = _matrices(systems, method)
                 looked_at(len(systems))
             return np.asarray(scale @ found @ inverse, dtype=float)
 
         motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
         # No series resolves rounding, which is largest in the longest period.
-        rounding = rounding_error(np.eye(len(scale)), Family([model.system(lowest_speed)]), chosen)
+        rounding = rounding_error(np.eye(len(scale)), Family([model.system(lowest_speed)]), method)
         tolerance = max(_TOLERANCE, 4.0 * rounding)
         windows = [
             window
             for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
             for window in _windows(matrices, motions, low, high, tolerance, _MOST_CUTS)
         ]
-        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
+        return cls(model, method, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
 
     @cached_property
     def error(self) -> float:
@@ -245,22 +256,11 @@ class MultiplierCurve:
         return int(max(1, min(_MOST_AT_ONCE, _CUBES_AT_ONCE // size**3)))
 
 
-def method_for(model: Model, lowest_speed: float, highest_speed: float) -> Method:
-    """Collocation if it suits the model at both ends and in the middle of a range of speed, else adaptive Magnus."""
-    speeds = (lowest_speed, (lowest_speed + highest_speed) / 2.0, highest_speed)
-    if all(is_suitable(model.system(speed)) for speed in speeds):
-        return Collocation()
-    return AdaptiveMagnus()
-
-
-def _family_matrices(systems: list[PeriodicSystem], method: Method) -> FloatArray:
-    first = systems[0].breakpoints
-    try:
-        if all(np.array_equal(system.breakpoints, first) for system in systems[1:]):
-            return transition_matrices(systems, method)
-        return np.concatenate([transition_matrices([system], method) for system in systems])
-    except UnsuitableSystemError:
-        return np.concatenate([transition_matrices([system], AdaptiveMagnus()) for system in systems])
+def _matrices(systems: list[PeriodicSystem], method: Method) -> FloatArray:
+    """Transition matrices of systems that form a family, or of each alone where breakpoints move with speed."""
+    if all(np.array_equal(system.breakpoints, systems[0].breakpoints) for system in systems[1:]):
+        return transition_matrices(systems, method)
+    return np.concatenate([transition_matrices([system], method) for system in systems])
 
 
 def _neighbours(slowness: FloatArray) -> list[NDArray[np.intp]]:

@@ -132,6 +132,11 @@ class Family:
         return np.where(frequencies > 0.0, frequencies, 1.0 / self.periods)
 
     @property
+    def carries_derivatives(self) -> bool:
+        """Whether the state holds more than (q, q̇) of a system, as in :mod:`facegear.maps.sensitivity`."""
+        return self.size != self.systems[0].size
+
+    @property
     def fastest_angle(self) -> float:
         """Largest ω T0 of the family [rad]."""
         return float((self.frequencies * self.periods).max())

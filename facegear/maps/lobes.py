@@ -15,7 +15,6 @@ from scipy.optimize import brentq
 
 from facegear.floquet.labels import combination
 from facegear.floquet.models import Model
-from facegear.floquet.multiplier_curves import method_for
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.peaks import growth_peak
 from facegear.maps.tracing import Tongue, tongues
@@ -228,12 +227,11 @@ class _Search:
 
     def broad_tip(self, level: float, tongue: Tongue) -> Lobe:
         """Tip of flutter, whose growth rate has no sharp peak over speed: samples of its speeds show the largest."""
-        method = method_for(self.model_at(level), *self.speed_range)
         speeds = np.unique([*np.linspace(tongue.lower, tongue.upper, _FLUTTER_SAMPLES), tongue.peak]).tolist()
 
         def rates(thickness_ratio: float) -> list[float]:
             model = self.model_at(thickness_ratio)
-            return [growth_rate(model.system(speed), method) for speed in speeds]
+            return [growth_rate(model.system(speed)) for speed in speeds]
 
         low, high, top = level, level * (1 + _STEP), self.thickness_range[1]
         while max(rates(high)) > 0.0:
@@ -245,7 +243,6 @@ class _Search:
 
     def sharp_tip(self, level: float, tongue: Tongue) -> Lobe:
         """Tip of a resonance: its peak over speed is followed."""
-        method = method_for(self.model_at(level), *self.speed_range)
         points = [(level, tongue.peak)]
         growth = tongue.growth_rate
 
@@ -256,7 +253,7 @@ class _Search:
             exponent = math.log(y1 / y0) / math.log(x1 / x0) if x1 != x0 else 1.0
             guess = y1 * (thickness_ratio / x1) ** min(max(exponent, 0.0), 2.0)
             speed, value = growth_peak(
-                self.model_at(thickness_ratio), method, guess, self.speed_range, **_WINDOWS
+                self.model_at(thickness_ratio), None, guess, self.speed_range, **_WINDOWS
             )
             points.append((thickness_ratio, speed))
             return value
@@ -272,4 +269,4 @@ class _Search:
         tip = float(brentq(peak, low, high, xtol=self.tolerance / 4))
         peak(tip)
         speed = points[-1][1]
-        return Lobe(tip, speed, combination(self.model_at(tip).system(speed), method).label)
+        return Lobe(tip, speed, combination(self.model_at(tip).system(speed)).label)

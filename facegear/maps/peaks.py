@@ -13,7 +13,7 @@ _MOST_WINDOWS = 60
 
 def growth_peak(
     model: Model,
-    method: Method,
+    method: Method | None,
     guess: float,
     speed_range: tuple[float, float],
     *,
@@ -28,8 +28,8 @@ def growth_peak(
     Parameters
     ----------
     model : Model
-    method : Method
-        For the transition matrices.
+    method : Method or None
+        For the transition matrices; see :func:`facegear.floquet.multipliers.with_method` for None.
     guess : float
         [rad/s]
     speed_range : tuple of float

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from facegear.floquet.models import Model, replace_parameter, value_of
-from facegear.floquet.multipliers import AdaptiveMagnus, Method
+from facegear.floquet.multipliers import Method, with_method
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
@@ -256,7 +256,7 @@ def transition_derivatives(
     parameters : sequence of str
         P names, as for :func:`system_derivative`.
     method : Method, optional
-        :class:`facegear.floquet.multipliers.AdaptiveMagnus` if left out; collocation does not apply.
+        See :func:`facegear.floquet.multipliers.with_method` if left out; collocation does not apply.
 
     Returns
     -------
@@ -285,8 +285,7 @@ def _varied(model: Model, speed: float, parameters: Sequence[str]) -> tuple[_Var
 
 def _split(family: _VariedFamily, method: Method | None) -> tuple[FloatArray, FloatArray]:
     """Φ and dΦ/d ln p, both in scaled coordinates."""
-    chosen = AdaptiveMagnus() if method is None else method
-    both = chosen.scaled_transition_matrices(family)
+    both = with_method(method, lambda chosen: chosen.scaled_transition_matrices(family))
     half = family.size
     return both[0, :half, :half], both[:, half:, :half]
 

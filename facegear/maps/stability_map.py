@@ -22,16 +22,14 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from facegear.floquet.collocation import UnsuitableSystemError
-from facegear.floquet.columns import GENERAL_ROUTE, column_spectral_radii, interpolated_spectral_radii
+from facegear.floquet.columns import column_spectral_radii, interpolated_spectral_radii
 from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at
 from facegear.floquet.multipliers import (
-    Collocation,
     Method,
-    default_method,
     multipliers,
     rounding_shift,
     transition_matrices,
+    with_method,
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
@@ -71,8 +69,8 @@ def stability_map(
     values : array_like, shape (V,)
         Values of the parameter, in the unit of its field.
     method : Method, optional
-        Method of :mod:`facegear.floquet.multipliers`. If left out, contact-force collocation where the free motion
-        allows it, else adaptive Magnus.
+        Method of :mod:`facegear.floquet.multipliers`; if left out, what
+        :func:`facegear.floquet.multipliers.with_method` finds to suit each column.
     jobs : int
         Number of workers, as joblib's ``n_jobs``; -1 for all processors, or all workers of the backend that
         ``joblib.parallel_config`` names. On this machine they are threads where only load parameters change, else
@@ -333,12 +331,7 @@ def _model_column(sweep: _Sweep, speed: float) -> FloatArray:
         return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
     # Coordinates in which entries are of comparable size, the same for the whole column.
     scale = Family(systems[:1]).scale
-    if sweep.method is not None:
-        return _interpolated_column(sweep, speed, sweep.method, scale)
-    try:
-        return _interpolated_column(sweep, speed, Collocation(), scale)
-    except UnsuitableSystemError:
-        return _interpolated_column(sweep, speed, GENERAL_ROUTE, scale)
+    return with_method(sweep.method, lambda method: _interpolated_column(sweep, speed, method, scale))
 
 
 def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: FloatArray) -> FloatArray:
@@ -356,7 +349,7 @@ def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: Flo
         abs(radii[witness] - _spectral_radius(sweep.models[witness].system(speed), method))
         > _INTERPOLATION_CHECK
     ):
-        return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
+        return np.array([_spectral_radius(model.system(speed), method) for model in sweep.models])
     return radii
 
 
@@ -378,8 +371,11 @@ def _error_estimate(sweep: _Sweep, speeds: FloatArray, radii: FloatArray) -> flo
     cells = {(v, s) for v in (0, last_value) for s in (0, last_speed)} | {(last_value // 2, last_speed // 2)}
     worst = 0.0
     for v, s in sorted(cells):
-        system = sweep.models[v].system(float(speeds[s]))
-        method = sweep.method or default_method(system)
-        difference = abs(_spectral_radius(system, method.refined()) - float(radii[v, s]))
-        worst = max(worst, difference + rounding_shift(system, method))
+        system, radius = sweep.models[v].system(float(speeds[s])), float(radii[v, s])
+
+        def error(method: Method, system: PeriodicSystem = system, radius: float = radius) -> float:
+            difference = abs(_spectral_radius(system, method.refined()) - radius)
+            return difference + rounding_shift(system, method)
+
+        worst = max(worst, with_method(sweep.method, error))
     return worst
