@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from facegear.floquet.modes import natural_exponents
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.peaks import growth_peak
 from facegear.maps.tracing import Tongue, tongues
@@ -107,11 +108,7 @@ def disk_growth_rate(
     damping, stiffness = disk_matrices(body, speed)
     force = driving_force(body, power, power_speed)
     stiffness = stiffness + force * unit_stiffness(body, speed, harmonics, following, tuple(angles))
-    n = len(stiffness)
-    # In the state (scale·q, q') both halves are of one size.
-    scale = math.sqrt(float(np.abs(stiffness).max()))
-    state = np.block([[np.zeros((n, n)), scale * np.eye(n)], [-stiffness / scale, -damping]])
-    return float(np.linalg.eigvals(state).real.max())
+    return float(natural_exponents(np.eye(len(stiffness)), damping, stiffness).real.max())
 
 
 def critical_power(

@@ -2,8 +2,8 @@
 
 `periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
 `multipliers` the transition matrix by the methods of `collocation`, `stepping` and `radau`, `columns` and
-`multiplier_curves` the same along a parameter and along speed; `labels` names what is unstable; `modal`, `averaging`,
-`hsu` are the approximations.
+`multiplier_curves` the same along a parameter and along speed; `modes` has natural motions, `labels` names what is
+unstable; `modal`, `averaging`, `hsu` are the approximations.
 
 What each method takes, and what it costs. A system whose mass meets jumps of a shape's slope has *kicks*, a load whose
 strength varies has a *weight*; *overdamped* and *rigid* modes do not oscillate; *sensitivities* are the derivatives of

@@ -64,12 +64,8 @@ class FrozenMotions:
     @classmethod
     def of(cls, model: Model, low: float, high: float) -> FrozenMotions:
         """Freeze a model in the middle of its smooth pieces, at both ends of a range of slowness."""
-        found = []
-        for slowness in (low, high):
-            family = Family([model.system(1.0 / slowness)])
-            middles = family.breakpoints + np.diff(np.append(family.breakpoints, 1.0)) / 2.0
-            found.append(np.linalg.eigvals(family.state_matrices(middles)).ravel() / slowness)
-        return cls(low, high, np.concatenate(found).astype(complex))
+        found = [Family([model.system(1.0 / x)]).frozen_exponents.ravel() / x for x in (low, high)]
+        return cls(low, high, np.concatenate(found))
 
     @cached_property
     def live_angle(self) -> tuple[FloatArray, FloatArray]:

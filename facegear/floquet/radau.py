@@ -140,10 +140,9 @@ def _graded_edges(family: Family, panel_angle: float, dead: float) -> FloatArray
     """
     starts = family.breakpoints
     ends = np.append(starts[1:], 1.0)
-    frozen = np.linalg.eigvals(family.state_matrices((starts + ends) / 2.0))
     parts = []
     for piece, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        rates = frozen[:, piece].ravel()
+        rates = family.frozen_exponents[:, piece].ravel()
         length = end - start
         death = np.minimum(dead / np.maximum(-rates.real, dead / (2.0 * length)), length)
         places = np.unique(np.append(death, [0.0, length]))
