@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 
 from facegear.floquet.modes import natural_exponents
 from facegear.floquet.multipliers import growth_rate
-from facegear.maps.peaks import growth_peak
+from facegear.maps.peaks import critical_value, growth_peak
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import Following, driving_force, unit_stiffness
@@ -273,15 +273,15 @@ def _tip(
     """Follow a tongue down to its tip: in turn the power at which its speed is stable, and the worst speed there."""
     speed, power = tongue.peak, unstable
 
-    def growth(value: float) -> float:
-        return growth_rate(at(value).system(speed))
+    def here(value: float) -> tuple[float, float]:
+        return speed, growth_rate(at(value).system(speed))
 
     for _ in range(_MOST_TURNS):
         above = power
-        power = float(brentq(growth, stable, above, rtol=tolerance / 4))
+        power, _ = critical_value(here, stable, above, rtol=tolerance / 4)
         if power > above * (1 - tolerance):
             return PowerLimit(power, speed, tongue.label)
-        speed, value = growth_peak(at(power), None, speed, speed_range, **_WINDOWS)
-        if growth(stable) >= 0.0 or value <= 0.0:
+        speed, value = growth_peak(at(power), speed, speed_range, **_WINDOWS)
+        if here(stable)[1] >= 0.0 or value <= 0.0:
             return PowerLimit(power, speed, tongue.label)
     raise ArithmeticError(f"the tip of tongue {tongue.label} was not found in {_MOST_TURNS} turns")

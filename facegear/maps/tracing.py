@@ -13,7 +13,7 @@ from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from facegear.floquet.labels import Combination, Kind, combination
 from facegear.floquet.models import Model, parameter_path, replace_parameter
@@ -21,6 +21,7 @@ from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, rigid_motions
 from facegear.maps.parallel import computed, parts_of
+from facegear.maps.peaks import largest_between
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
 from facegear.support.parameters import ascending, finite_array, positive, within
 from facegear.support.types import FloatArray
@@ -341,10 +342,8 @@ def _peak(curve: MultiplierCurve, low: float, high: float, best: float) -> float
 
     if low >= high:
         return best
-    result = minimize_scalar(
-        lambda speed: -growth(speed), bounds=(low, high), method="bounded", options={"xatol": 1e-9 * high}
-    )
-    return float(result.x) if growth(float(result.x)) >= growth(best) else best
+    speed, value = largest_between(growth, low, high, 1e-9 * high)
+    return speed if value >= growth(best) else best
 
 
 def _tongue(model: Model, method: Method, lower: float, upper: float, peak: float) -> Tongue:
