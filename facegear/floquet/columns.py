@@ -228,12 +228,8 @@ def _resolved(
     low, high = float(points.min()), float(points.max())
     if points.size <= _LOWEST_DEGREE + 1 or low == high:
         return None
-    series = ChebyshevSeries.sampled(evaluate, low, high, _LOWEST_DEGREE)
-    while series.tail > tolerance:
-        if 2 * series.degree + 1 >= points.size:
-            return None
-        series = series.refined(evaluate)
-    return series
+    series = ChebyshevSeries.resolved(evaluate, low, high, _LOWEST_DEGREE, points.size - 2, tolerance)
+    return series if series.tail <= tolerance else None
 
 
 def _tail_at(series: ChebyshevSeries, degree: int) -> float:

@@ -35,7 +35,6 @@ _WINDOW_ANGLE = 200.0
 _LOWEST_DEGREE = 8
 # Degree of the series from which the degree is read that motions need: far above what a window's angle asks for.
 _LONGEST = 256
-_DOUBLINGS = 1
 _MOST_CUTS = 12
 # A motion that decays by e⁻³⁰ = 1e-13 in a period leaves nothing in the transition matrix.
 _DEAD = 30.0
@@ -89,6 +88,16 @@ class FrozenMotions:
         points = np.interp(places, density, slowness)
         points[[0, -1]] = self.low, self.high
         return np.asarray(points, dtype=float)
+
+    @cached_property
+    def windows(self) -> tuple[tuple[float, float], ...]:
+        """Parts of the range on each of which one series is tried."""
+        return tuple(pairwise(self.points(_WINDOW_ANGLE, 0).tolist()))
+
+    @property
+    def matrices(self) -> int:
+        """Number of transition matrices that the series on all windows are expected to take."""
+        return sum(self.degree(low, high) + 1 for low, high in self.windows)
 
     def degree(self, low: float, high: float) -> int:
         """Even degree at which the Chebyshev series of all motions between two values of slowness have ended."""
@@ -183,7 +192,7 @@ class MultiplierCurve:
         tolerance = max(_TOLERANCE, 4.0 * rounding)
         windows = [
             window
-            for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
+            for low, high in motions.windows
             for window in _windows(matrices, motions, low, high, tolerance, _MOST_CUTS)
         ]
         return cls(model, method, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
@@ -275,11 +284,8 @@ def _windows(
     cuts: int,
 ) -> list[ChebyshevSeries]:
     """Series on one window, or on halves of it where its degree does not suffice."""
-    series = ChebyshevSeries.sampled(evaluate, low, high, motions.degree(low, high))
-    for _ in range(_DOUBLINGS):
-        if series.tail <= tolerance:
-            return [series]
-        series = series.refined(evaluate)
+    degree = motions.degree(low, high)
+    series = ChebyshevSeries.resolved(evaluate, low, high, degree, 2 * degree, tolerance)
     if series.tail <= tolerance:
         return [series]
     if cuts == 0:
