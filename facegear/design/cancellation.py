@@ -28,10 +28,10 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from facegear.floquet.collocation import gauss_rule
+from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.tracing import Tongue, tongues
@@ -45,7 +45,7 @@ from facegear.support.parameters import (
     positive,
     within,
 )
-from facegear.support.types import ComplexArray, FloatArray
+from facegear.support.types import ComplexArray
 
 Kind = Literal["sum", "difference"]
 
@@ -274,18 +274,10 @@ def pinion_couplings(
     harmonic = integer_at_least("order", order, 1)
     if any(load.rate != "frozen" or load.weight is not None for load in system.loads):
         raise ValueError("system must have loads of frozen rate without weight")
-    n = system.size
-    mass, damping, stiffness = _mean_matrices(system)
-    state = np.block(
-        [
-            [np.zeros((n, n)), np.eye(n)],
-            [-np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)],
-        ]
-    )
-    values, right = np.linalg.eig(state)
-    left = np.linalg.inv(right)[:, n:] @ np.linalg.inv(mass)
-    positive_ones = np.flatnonzero(values.imag > 0.0)
-    ascending = positive_ones[np.argsort(values.imag[positive_ones])]
+    motions = NaturalMotions.of_mean(system)
+    values, right = motions.exponents, motions.displacements
+    left = motions.of_forces(motions.amplitudes)
+    ascending = motions.oscillating
     for name, number in (("k", k), ("j", j)):
         if integer_at_least(name, number, 1) > ascending.size:
             raise ValueError(f"{name} must be at most {ascending.size}, the number of modes, got {number!r}")
@@ -296,7 +288,7 @@ def pinion_couplings(
     for load in system.loads:
         modulation = _shape_products(load.shape, harmonic)
         strength = load.stiffness + load.damping * values[b] + load.mass * values[b] ** 2
-        parts.append(-left[a] @ modulation @ right[:n, b] * strength)
+        parts.append(-left[a] @ modulation @ right[:, b] * strength)
     return np.asarray(parts, dtype=complex)
 
 
@@ -309,17 +301,6 @@ def _shape_products(shape: PiecewiseChebyshev, harmonic: int) -> ComplexArray:
     phi = shape(fractions)
     turning = np.outer(length, weights).ravel() * np.exp(-2j * np.pi * harmonic * fractions)
     return np.asarray((phi.T * turning) @ phi, dtype=complex)
-
-
-def _mean_matrices(system: PeriodicSystem) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Mass, damping and stiffness with the loads averaged over the period."""
-    means = [_shape_products(load.shape, 0).real for load in system.loads]
-
-    def averaged(name: str) -> FloatArray:
-        loads = zip(system.loads, means, strict=True)
-        return np.asarray(getattr(system, name) + sum(getattr(load, name) * mean for load, mean in loads))
-
-    return averaged("mass"), averaged("damping"), averaged("stiffness")
 
 
 def interference(system: PeriodicSystem, k: int, j: int, kind: Kind = "sum", order: int = 1) -> float:
@@ -353,8 +334,7 @@ def mode_content(model: Transverse, speed: float, mode: int) -> dict[tuple[int, 
     number = integer_at_least("mode", mode, 1)
     if number > system.size:
         raise ValueError(f"mode must be at most {system.size}, the number of modes, got {mode!r}")
-    mass, _, stiffness = _mean_matrices(system)
-    _, modes = eigh((stiffness + stiffness.T) / 2.0, mass)
+    modes = NaturalMotions.of_mean(system).undamped
     squares = modes[:, number - 1] ** 2 / (modes[:, number - 1] ** 2).sum()
     parts: dict[tuple[int, int], float] = {}
     for shape, square in zip(disk_modes(model.body), squares.tolist(), strict=True):

@@ -19,8 +19,7 @@ import numpy as np
 import xarray as xr
 
 from facegear.floquet.models import Model, is_part, replace_at
-from facegear.floquet.multiplier_curves import method_for
-from facegear.floquet.multipliers import Method, growth_rate
+from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue, tongues
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import integer_at_least, rpm
@@ -141,8 +140,7 @@ def effects_of_changes(
     """
     followed = integer_at_least("followed", followed, 0)
     changes = possible_changes(model) if found else ()
-    method = method_for(model, *speed_range)
-    slopes = [_slopes(model, change, found, speed_range, method) for change in changes]
+    slopes = [_slopes(model, change, found, speed_range) for change in changes]
     # Where all speeds are unstable no width changes: growth decides.
     order = sorted(range(len(changes)), key=lambda i: (-abs(slopes[i][0]), -abs(slopes[i][1])))
     after = np.full((len(order), 2), np.nan)
@@ -183,18 +181,18 @@ def effects_of_changes(
 
 
 def _slopes(
-    model: Any, change: Change, found: Sequence[Tongue], speed_range: tuple[float, float], method: Method
+    model: Any, change: Change, found: Sequence[Tongue], speed_range: tuple[float, float]
 ) -> tuple[float, float]:
     """Differentiate the unstable width [rad/s] and the largest growth rate [1/s] by the relative change."""
     more, less = change.apply(model, _STEP), change.apply(model, -_STEP)
 
     def by_change(speed: float) -> float:
-        ends = (growth_rate(other.system(speed), method) for other in (more, less))
+        ends = (growth_rate(other.system(speed)) for other in (more, less))
         return (next(ends) - next(ends)) / (2 * _STEP)
 
     def by_speed(speed: float) -> float:
         step = _STEP * speed
-        ends = (growth_rate(model.system(speed + sign * step), method) for sign in (1, -1))
+        ends = (growth_rate(model.system(speed + sign * step)) for sign in (1, -1))
         return (next(ends) - next(ends)) / (2 * step)
 
     width = 0.0

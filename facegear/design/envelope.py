@@ -21,9 +21,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from facegear.floquet.models import replace_parameter
-from facegear.floquet.multiplier_curves import method_for
+from facegear.floquet.modes import natural_exponents
 from facegear.floquet.multipliers import growth_rate
-from facegear.maps.peaks import growth_peak
+from facegear.maps.peaks import critical_value, growth_peak
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
@@ -103,11 +103,7 @@ def disk_growth_rate(
     """
     damping, stiffness = disk_matrices(body, speed)
     stiffness = stiffness + force.stiffness(body, speed, tuple(angles))
-    n = len(stiffness)
-    # In the state (scale·q, q') both halves are of one size.
-    scale = math.sqrt(float(np.abs(stiffness).max()))
-    state = np.block([[np.zeros((n, n)), scale * np.eye(n)], [-stiffness / scale, -damping]])
-    return float(np.linalg.eigvals(state).real.max())
+    return float(natural_exponents(np.eye(len(stiffness)), damping, stiffness).real.max())
 
 
 def critical_power(
@@ -263,18 +259,17 @@ def _tip(
     tolerance: float,
 ) -> PowerLimit:
     """Follow a tongue down to its tip: in turn the power at which its speed is stable, and the worst speed there."""
-    method = method_for(at(unstable), *speed_range)
     speed, power = tongue.peak, unstable
 
-    def growth(value: float) -> float:
-        return growth_rate(at(value).system(speed), method)
+    def here(value: float) -> tuple[float, float]:
+        return speed, growth_rate(at(value).system(speed))
 
     for _ in range(_MOST_TURNS):
         above = power
-        power = float(brentq(growth, stable, above, rtol=tolerance / 4))
+        power, _ = critical_value(here, stable, above, rtol=tolerance / 4)
         if power > above * (1 - tolerance):
             return PowerLimit(power, speed, tongue.label)
-        speed, value = growth_peak(at(power), method, speed, speed_range, **_WINDOWS)
-        if growth(stable) >= 0.0 or value <= 0.0:
+        speed, value = growth_peak(at(power), speed, speed_range, **_WINDOWS)
+        if here(stable)[1] >= 0.0 or value <= 0.0:
             return PowerLimit(power, speed, tongue.label)
     raise ArithmeticError(f"the tip of tongue {tongue.label} was not found in {_MOST_TURNS} turns")

@@ -17,7 +17,7 @@ import numpy as np
 
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share
 from facegear.drives.drive_file import DriveFile
-from facegear.floquet.modal import modal_expansion
+from facegear.floquet.modes import mean_growth_rate
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
@@ -114,13 +114,8 @@ def _settled(
     model: Transverse, speed_range: tuple[float, float], tolerance: float, most_steps: int
 ) -> tuple[SettledTongues, float]:
     found = settled_tongues(model, speed_range, tolerance=tolerance, most_steps=most_steps)
-    growth = [mean_growth_rate(found.model, float(speed)) for speed in np.linspace(*speed_range, _SPEEDS)]
+    growth = [mean_growth_rate(found.model.system(v)) for v in np.linspace(*speed_range, _SPEEDS).tolist()]
     return found, float(np.mean(np.array(growth) > 0.0))
-
-
-def mean_growth_rate(model: Transverse, speed: float) -> float:
-    """Growth rate of the system averaged over a mesh period [1/s]: positive where the drive flutters."""
-    return modal_expansion(model.system(speed), 1).mean_growth_rate
 
 
 # --- in words ---------------------------------------------------------------------------------------------------

@@ -18,12 +18,13 @@ H, F, E, G do not depend on k, c, m, so a whole column of a map shares them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.periodic import ContactLoad, LoadColumn, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 from facegear.support.types import ComplexArray, FloatArray
@@ -34,6 +35,9 @@ DEFAULT_NODES = 16
 DEFAULT_PANEL_ANGLE = 9.0
 #: Estimated error of the motion over one panel at which it is halved, in units of the root of the energy.
 PANEL_TOLERANCE = 1e-12
+# A mode that is slower than this part of the fastest is a rigid-body motion, whose frequency is known to the root of
+# rounding only; the modes of a system that is not held must not be taken for oscillations.
+_SLOWEST = 1e-5
 # Rounds of halving before a system is refused.
 _MOST_HALVINGS = 8
 # Systems share panels if they turn by at least this part of the largest angle among them in a period.
@@ -89,26 +93,18 @@ class FreeModes:
     @classmethod
     def _of(cls, mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FreeModes:
         n = mass.shape[-1]
-        inverse = np.linalg.inv(np.linalg.cholesky(mass))
-        root = inverse.swapaxes(-1, -2)
-        stiffness, damping = inverse @ stiffness @ root, inverse @ damping @ root
-        scale = np.sqrt(np.abs(stiffness).max(axis=(-1, -2), keepdims=True))
-        if (scale == 0.0).any():
+        if not stiffness.any(axis=(-1, -2)).all():
             raise UnsuitableSystemError("stiffness is zero: every free motion is a rigid-body motion")
-        # In the state (scale·x, ẋ) both halves have the size of a root energy.
-        state = np.zeros((*mass.shape[:-2], 2 * n, 2 * n))
-        state[..., :n, n:] = scale * np.eye(n)
-        state[..., n:, :n], state[..., n:, n:] = -stiffness / scale, -damping
-        values, vectors = np.linalg.eig(state)
-        oscillating = values.imag > 1e-9 * np.abs(values).max(axis=-1, keepdims=True)
+        motions = NaturalMotions.of(mass, damping, stiffness)
+        values = motions.exponents
+        oscillating = values.imag > _SLOWEST * np.abs(values).max(axis=-1, keepdims=True)
         counts = np.count_nonzero(oscillating, axis=-1)
         if (counts != n).any():
             raise UnsuitableSystemError(
                 f"the free motion has {counts[counts != n].flat[0]} oscillating modes, not {n}: "
                 "some are rigid-body or overdamped"
             )
-        values = values[oscillating].reshape(*mass.shape[:-2], n)
-        columns = vectors.swapaxes(-1, -2)[oscillating].reshape(*mass.shape[:-2], n, 2 * n)
+        columns = motions.vectors.swapaxes(-1, -2)[oscillating].reshape(*mass.shape[:-2], n, 2 * n)
         vectors = columns.swapaxes(-1, -2)
         vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
         basis = np.concatenate([vectors, vectors.conj()], axis=-1)
@@ -118,16 +114,14 @@ class FreeModes:
                 f"the free modes are close to dependent (condition number {condition:.2g})"
             )
         # x = Re(W y) with y twice the coefficients of the pairs W c + conj(W c).
-        rows = 2.0 * np.linalg.inv(basis)[..., :n, :]
-        to_energy = np.linalg.inv(root)
+        rows = np.asarray(2.0 * np.linalg.inv(basis)[..., :n, :], dtype=complex)
+        half = replace(motions, exponents=values[oscillating].reshape(*mass.shape[:-2], n), vectors=vectors)
         return cls(
-            eigenvalues=values,
-            displacement=root @ vectors[..., :n, :] / scale,
-            velocity=root @ vectors[..., n:, :],
-            coordinates=np.concatenate(
-                [rows[..., :n] * scale @ to_energy, rows[..., n:] @ to_energy], axis=-1
-            ),
-            input=np.asarray(rows[..., n:] @ inverse, dtype=complex),
+            eigenvalues=half.exponents,
+            displacement=half.displacements,
+            velocity=half.velocities,
+            coordinates=np.asarray(rows @ half.from_state, dtype=complex),
+            input=half.of_forces(rows),
         )
 
     @property
@@ -307,6 +301,15 @@ def _at_nodes(
     return np.stack([np.stack([function(fractions) for function in row], axis=-2) for row in functions])
 
 
+def mobilities(systems: Sequence[PeriodicSystem]) -> FloatArray:
+    """Return the largest φᵀM⁻¹φ of each load, at sampled instants, shape (V, p)."""
+    samples = np.linspace(0.0, 1.0, 16, endpoint=False)
+    shapes = _at_nodes(systems, lambda load: load.shape, samples)
+    mass = np.stack([system.mass for system in systems])[:, None]
+    moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
+    return np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
+
+
 class FreeMotion:
     """A system prepared for many values of its load parameters up to those of `column`, or many systems for one each.
 
@@ -340,12 +343,7 @@ class FreeMotion:
     ) -> None:
         self.systems = systems
         self.modes = FreeModes.of_all(systems)
-        samples = np.linspace(0.0, 1.0, 16, endpoint=False)
-        shapes = _at_nodes(systems, lambda load: load.shape, samples)
-        mass = np.stack([system.mass for system in systems])[:, None]
-        moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
-        self.mobility = (shapes * moved).sum(axis=-1).max(axis=1)
-        stiffest = (column.stiffness * self.mobility).sum(axis=-1).max()
+        stiffest = (column.stiffness * mobilities(systems)).sum(axis=-1).max()
         periods = np.array([system.period for system in systems])
         frequencies = np.abs(self.modes.eigenvalues).max(axis=-1)
         angle = float((np.hypot(frequencies, np.sqrt(stiffest)) * periods).max())
@@ -483,15 +481,6 @@ def chain(steps: FloatArray) -> FloatArray:
         pairs = steps[:, 1:even:2] @ steps[:, 0:even:2]
         steps = np.concatenate([pairs, steps[:, even:]], axis=1)
     return steps[:, 0]
-
-
-def is_suitable(system: PeriodicSystem) -> bool:
-    """Whether contact-force collocation applies: oscillating free modes, contact forces it resolves."""
-    try:
-        FreeMotion([system], LoadColumn.of(system))
-    except UnsuitableSystemError:
-        return False
-    return True
 
 
 def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) -> FloatArray:

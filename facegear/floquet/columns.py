@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.floquet.collocation import FreeMotion, UnsuitableSystemError
-from facegear.floquet.multipliers import AdaptiveMagnus, Method, transition_matrices
+from facegear.floquet.collocation import FreeMotion, mobilities
+from facegear.floquet.multipliers import Collocation, Method, transition_matrices, with_method
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries, interleaved
 from facegear.support.parameters import finite_array
@@ -23,8 +23,6 @@ from facegear.support.types import ComplexArray, FloatArray
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
-#: General route of columns; what it estimates is the error before its last extrapolation.
-GENERAL_ROUTE = AdaptiveMagnus(1e-9)
 # Degree of the first Chebyshev series that is tried.
 _LOWEST_DEGREE = 8
 # Eigenvalues are dropped where all of them are smaller than all that are kept by this factor at least.
@@ -54,7 +52,7 @@ def column_spectral_radii(
         Load parameters m [kg], c [N s/m], k [N/m] (or rotational units) along the column, not negative. One
         number for all loads or one a load; a single number holds for the whole column.
     method : Method, optional
-        If left out, contact-force collocation where the free motion allows it, else adaptive Magnus.
+        See :func:`facegear.floquet.multipliers.with_method` if left out.
 
     Returns
     -------
@@ -67,29 +65,33 @@ def column_spectral_radii(
         Naming the parameter, if shapes do not match or values are negative or not finite.
     """
     column = _load_column(len(system.loads), masses, dampings, stiffnesses)
-    evaluate: Callable[[LoadColumn], FloatArray]
-    mobility = 1.0
-    if method is None:
-        try:
-            motion = FreeMotion([system], column)
-        except UnsuitableSystemError:
-            method = GENERAL_ROUTE
-        else:
-            evaluate = motion.transition_matrices
-            mobility = float(motion.mobility.max(initial=0.0))
-    if method is not None:
+    line = _StraightLine.through(column, float(mobilities([system]).max(initial=0.0)))
 
-        def evaluate(part: LoadColumn) -> FloatArray:
-            systems = [
-                system.replace_loads(mass=m, damping=c, stiffness=k)
-                for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
-            ]
-            return transition_matrices(systems, method)
+    def radii(chosen: Method) -> FloatArray:
+        evaluate = _load_matrices(system, column, chosen)
+        if line is None:
+            return _spectral_radii(evaluate(column))
+        return interpolated_spectral_radii(lambda t: evaluate(line.column(t)), line.variable)
 
-    line = _StraightLine.through(column, mobility)
-    if line is None:
-        return _spectral_radii(evaluate(column))
-    return interpolated_spectral_radii(lambda t: evaluate(line.column(t)), line.variable)
+    return with_method(method, radii)
+
+
+def _load_matrices(
+    system: PeriodicSystem, column: LoadColumn, method: Method
+) -> Callable[[LoadColumn], FloatArray]:
+    """Transition matrices of a system for any part of a column, in one set of coordinates."""
+    if isinstance(method, Collocation):
+        # What does not depend on the loads is prepared once.
+        return FreeMotion([system], column, method.nodes, method.panel_angle).transition_matrices
+
+    def matrices(part: LoadColumn) -> FloatArray:
+        systems = [
+            system.replace_loads(mass=m, damping=c, stiffness=k)
+            for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
+        ]
+        return transition_matrices(systems, method)
+
+    return matrices
 
 
 def family_spectral_radii(
@@ -104,7 +106,7 @@ def family_spectral_radii(
         their meaning and breakpoints that stay.
     values : array_like, shape (V,)
     method : Method, optional
-        Adaptive Magnus if left out.
+        See :func:`facegear.floquet.multipliers.with_method` if left out.
 
     Returns
     -------
@@ -114,12 +116,12 @@ def family_spectral_radii(
     if points.ndim != 1 or points.size == 0:
         raise ValueError(f"values must have shape (V,), V >= 1; got shape {points.shape}")
 
-    chosen = GENERAL_ROUTE if method is None else method
+    def radii(chosen: Method) -> FloatArray:
+        return interpolated_spectral_radii(
+            lambda part: transition_matrices([system_at(value) for value in part.tolist()], chosen), points
+        )
 
-    def evaluate(part: FloatArray) -> FloatArray:
-        return transition_matrices([system_at(float(value)) for value in part], chosen)
-
-    return interpolated_spectral_radii(evaluate, points)
+    return with_method(method, radii)
 
 
 def _load_column(loads: int, masses: ArrayLike, dampings: ArrayLike, stiffnesses: ArrayLike) -> LoadColumn:
@@ -226,12 +228,8 @@ def _resolved(
     low, high = float(points.min()), float(points.max())
     if points.size <= _LOWEST_DEGREE + 1 or low == high:
         return None
-    series = ChebyshevSeries.sampled(evaluate, low, high, _LOWEST_DEGREE)
-    while series.tail > tolerance:
-        if 2 * series.degree + 1 >= points.size:
-            return None
-        series = series.refined(evaluate)
-    return series
+    series = ChebyshevSeries.resolved(evaluate, low, high, _LOWEST_DEGREE, points.size - 2, tolerance)
+    return series if series.tail <= tolerance else None
 
 
 def _tail_at(series: ChebyshevSeries, degree: int) -> float:

@@ -171,49 +171,6 @@ def resonance_bands(
     return tuple(sorted(_without_repeats(bands), key=lambda band: (band.centre, band.label)))
 
 
-def growth_rate_at(
-    system: PeriodicSystem | ModalExpansion, *, order: int | None = None, reach: float = REACH
-) -> float:
-    """Largest first-order growth rate over all pairs and orders at the system's own period.
-
-    Parameters
-    ----------
-    system : PeriodicSystem or ModalExpansion
-        As for :func:`resonance_bands`.
-    order : int, optional
-        Highest s; by default the highest that can be resonant, 2 ω_max/ω, or all of an expansion.
-    reach : float
-        As for :func:`resonance_bands`.
-
-    Returns
-    -------
-    float
-        σ [1/s], at least that of the mean system; unstable where positive.
-    """
-    if order is None:
-        if isinstance(system, ModalExpansion):
-            order = system.order
-        else:
-            mean = modal_expansion(system, 1)
-            order = max(1, round(2 * float(mean.frequencies[-1]) / mean.parametric_frequency))
-    expansion = _expanded(system, order, reach)
-    frequency = expansion.parametric_frequency
-    signed = expansion.signed_frequencies
-    best = expansion.mean_growth_rate
-    seen: set[tuple[tuple[int, int], ...]] = set()
-    for a in range(len(expansion.frequencies)):
-        for b in range(len(signed)):
-            s = round((signed[a] - signed[b]) / frequency)
-            if not 0 < abs(s) <= order or not coupled(expansion, a, b, s):
-                continue
-            block = congruent_block(expansion, a, b, s, frequency, reach)
-            key = signature(block)
-            if key not in seen:
-                seen.add(key)
-                best = max(best, float(block.growth_rate(frequency)))
-    return best
-
-
 def band_speeds(
     model: Model,
     speeds: tuple[float, float],

@@ -14,9 +14,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 
 from facegear.floquet.collocation import UnsuitableSystemError, transition_matrices_to
+from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.multipliers import Method, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.types import ComplexArray, FloatArray
@@ -25,8 +25,6 @@ Kind = Literal["sum", "difference", "mean"]
 
 # Instants of the period over which the part of each mode in the motion is averaged.
 _INSTANTS = 8
-# Relative size below which the imaginary part of an eigenvalue is rounding, as in facegear.floquet.modal.
-_ROUNDING = 1e-11
 # Distance from exact resonance, as a part of ω, at which a pair counts half.
 _DETUNING = 0.1
 
@@ -111,26 +109,14 @@ class _MeanModes:
 
     @classmethod
     def of(cls, system: PeriodicSystem) -> _MeanModes:
-        mass, damping, stiffness = (series.mean for series in system.fourier(1))
-        squares, modes = eigh((stiffness + stiffness.T) / 2.0, mass)
-        scale = np.sqrt(np.maximum(np.abs(squares), 1e-12 * np.abs(squares).max()))
-        n = system.size
-        state = np.zeros((2 * n, 2 * n))
-        state[:n, n:] = np.diag(scale)
-        state[n:, :n] = -(modes.T @ stiffness @ modes) / scale
-        state[n:, n:] = -(modes.T @ damping @ modes)
-        values, right = np.linalg.eig(state)
-        to_modal = modes.T @ mass
-        zero = np.zeros((n, n))
-        energy = np.block([[scale[:, None] * to_modal, zero], [zero, to_modal]])
-        numbers = np.zeros(2 * n, dtype=np.int64)
-        positive = np.flatnonzero(values.imag > _ROUNDING * np.abs(values).max())
-        positive = positive[np.argsort(values.imag[positive])]
-        for number, index in enumerate(positive.tolist(), start=1):
+        motions = NaturalMotions.of_mean(system)
+        values = motions.exponents
+        numbers = np.zeros(values.size, dtype=np.int64)
+        for number, index in enumerate(motions.oscillating.tolist(), start=1):
             numbers[index] = number
             numbers[np.abs(values - values[index].conj()).argmin()] = number
         # Nearly dependent motions, as at critical damping, only blur the shares.
-        return cls(values, numbers, np.linalg.pinv(right) @ energy)
+        return cls(values, numbers, np.linalg.pinv(motions.vectors) @ motions.from_state)
 
     def action(self, state: ComplexArray) -> FloatArray:
         """Energy over frequency of each natural motion in a state, in parts of the whole."""

@@ -20,15 +20,14 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import eigh
 
+from facegear.floquet.modes import ROUNDING as _ROUNDING
+from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import FourierSeries
 from facegear.support.parameters import integer_at_least
 from facegear.support.types import ComplexArray, FloatArray
 
 Kind = Literal["sum", "difference"]
-
-# Relative size below which an entry or a rate is rounding.
-_ROUNDING = 1e-11
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,8 +236,6 @@ def modal_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
     """
     order = integer_at_least("order", order, 1)
     mass, damping, stiffness = system.fourier(order)
-    # Real modal coordinates of the symmetric mean, scaled by frequency, make the state matrix nearly normal.
-    squares, modes = eigh((stiffness.mean + stiffness.mean.T) / 2, mass.mean)
     full = np.linalg.eigvals(np.linalg.solve(mass.mean, stiffness.mean))
     if np.abs(full).min() <= 1e-12 * np.abs(full).max():
         raise ValueError(
@@ -246,29 +243,22 @@ def modal_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
             f"{np.abs(full).max():.3g} (rad/s)²): a rigid-body mode has no natural frequency; restrain it or remove "
             "its coordinate"
         )
-    scale = np.sqrt(np.maximum(np.abs(squares), 1e-12 * np.abs(squares).max()))
-    size = system.size
-    state = np.zeros((2 * size, 2 * size))
-    state[:size, size:] = np.diag(scale)
-    state[size:, :size] = -(modes.T @ stiffness.mean @ modes) / scale
-    state[size:, size:] = -(modes.T @ damping.mean @ modes)
-    eigenvalues, right = np.linalg.eig(state)
-    condition = np.linalg.cond(right)
+    motions = NaturalMotions.of(mass.mean, damping.mean, stiffness.mean)
+    eigenvalues, oscillating = motions.exponents, motions.oscillating
+    condition = np.linalg.cond(motions.vectors)
     if not condition < 1e8:
         raise ValueError(
             f"system: eigenvectors of the mean system are nearly dependent (condition {condition:.1g}), as at critical "
             "damping; first-order averaging needs an eigenbasis"
         )
     largest = np.abs(eigenvalues).max()
-    oscillating = np.flatnonzero(eigenvalues.imag > _ROUNDING * largest)
-    oscillating = oscillating[np.argsort(eigenvalues.imag[oscillating])]
     if oscillating.size == 0:
         raise ValueError(
             "system: every mode of the mean system is overdamped, so that there is no natural frequency"
         )
     values = eigenvalues[oscillating]
-    displacements = modes @ (right[:size, oscillating] / scale[:, None])
-    forces = np.linalg.inv(right)[oscillating, size:] @ modes.T
+    displacements = motions.displacements[:, oscillating]
+    forces = motions.of_forces(motions.amplitudes[oscillating])
     values, displacements, forces = (
         np.concatenate([part, part.conj()], axis=axis)
         for part, axis in ((values, 0), (displacements, 1), (forces, 0))

@@ -15,15 +15,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from facegear.floquet.collocation import UnsuitableSystemError, is_suitable
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    Collocation,
     Method,
     disturbed,
     rounding_error,
     transition_matrices,
+    with_method,
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries, lobatto_coefficients
@@ -37,7 +35,6 @@ _WINDOW_ANGLE = 200.0
 _LOWEST_DEGREE = 8
 # Degree of the series from which the degree is read that motions need: far above what a window's angle asks for.
 _LONGEST = 256
-_DOUBLINGS = 1
 _MOST_CUTS = 12
 # A motion that decays by e⁻³⁰ = 1e-13 in a period leaves nothing in the transition matrix.
 _DEAD = 30.0
@@ -66,12 +63,8 @@ class FrozenMotions:
     @classmethod
     def of(cls, model: Model, low: float, high: float) -> FrozenMotions:
         """Freeze a model in the middle of its smooth pieces, at both ends of a range of slowness."""
-        found = []
-        for slowness in (low, high):
-            family = Family([model.system(1.0 / slowness)])
-            middles = family.breakpoints + np.diff(np.append(family.breakpoints, 1.0)) / 2.0
-            found.append(np.linalg.eigvals(family.state_matrices(middles)).ravel() / slowness)
-        return cls(low, high, np.concatenate(found).astype(complex))
+        found = [Family([model.system(1.0 / x)]).frozen_exponents.ravel() / x for x in (low, high)]
+        return cls(low, high, np.concatenate(found))
 
     @cached_property
     def live_angle(self) -> tuple[FloatArray, FloatArray]:
@@ -95,6 +88,16 @@ class FrozenMotions:
         points = np.interp(places, density, slowness)
         points[[0, -1]] = self.low, self.high
         return np.asarray(points, dtype=float)
+
+    @cached_property
+    def windows(self) -> tuple[tuple[float, float], ...]:
+        """Parts of the range on each of which one series is tried."""
+        return tuple(pairwise(self.points(_WINDOW_ANGLE, 0).tolist()))
+
+    @property
+    def matrices(self) -> int:
+        """Number of transition matrices that the series on all windows are expected to take."""
+        return sum(self.degree(low, high) + 1 for low, high in self.windows)
 
     def degree(self, low: float, high: float) -> int:
         """Even degree at which the Chebyshev series of all motions between two values of slowness have ended."""
@@ -151,35 +154,48 @@ class MultiplierCurve:
     ) -> MultiplierCurve:
         """Interpolate the transition matrices of a model between two speeds [rad/s].
 
-        `looked_at` is told the number of matrices whenever some have been computed or interpolated.
+        The method is as :func:`facegear.floquet.multipliers.with_method` says, one for all speeds. `looked_at` is told
+        the number of matrices whenever some have been computed or interpolated.
 
         Raises
         ------
         ArithmeticError
             If they do not vary smoothly with speed.
         """
+        return with_method(
+            method, lambda chosen: cls._interpolated(model, lowest_speed, highest_speed, chosen, looked_at)
+        )
+
+    @classmethod
+    def _interpolated(
+        cls,
+        model: Model,
+        lowest_speed: float,
+        highest_speed: float,
+        method: Method,
+        looked_at: Callable[[int], object],
+    ) -> MultiplierCurve:
         scale = Family([model.system(highest_speed)]).scale
         inverse = np.linalg.inv(scale)
-        chosen = method_for(model, lowest_speed, highest_speed) if method is None else method
 
         def matrices(slowness: FloatArray) -> FloatArray:
             found = np.empty((slowness.size, *scale.shape))
             for part in _neighbours(slowness):
                 systems = [model.system(1.0 / x) for x in slowness[part].tolist()]
-                found[part] = _family_matrices(systems, chosen)
+                found[part] = _matrices(systems, method)
                 looked_at(len(systems))
             return np.asarray(scale @ found @ inverse, dtype=float)
 
         motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
         # No series resolves rounding, which is largest in the longest period.
-        rounding = rounding_error(np.eye(len(scale)), Family([model.system(lowest_speed)]), chosen)
+        rounding = rounding_error(np.eye(len(scale)), Family([model.system(lowest_speed)]), method)
         tolerance = max(_TOLERANCE, 4.0 * rounding)
         windows = [
             window
-            for low, high in pairwise(motions.points(_WINDOW_ANGLE, 0).tolist())
+            for low, high in motions.windows
             for window in _windows(matrices, motions, low, high, tolerance, _MOST_CUTS)
         ]
-        return cls(model, chosen, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
+        return cls(model, method, lowest_speed, highest_speed, motions, tuple(windows), looked_at)
 
     @cached_property
     def error(self) -> float:
@@ -245,22 +261,11 @@ class MultiplierCurve:
         return int(max(1, min(_MOST_AT_ONCE, _CUBES_AT_ONCE // size**3)))
 
 
-def method_for(model: Model, lowest_speed: float, highest_speed: float) -> Method:
-    """Collocation if it suits the model at both ends and in the middle of a range of speed, else adaptive Magnus."""
-    speeds = (lowest_speed, (lowest_speed + highest_speed) / 2.0, highest_speed)
-    if all(is_suitable(model.system(speed)) for speed in speeds):
-        return Collocation()
-    return AdaptiveMagnus()
-
-
-def _family_matrices(systems: list[PeriodicSystem], method: Method) -> FloatArray:
-    first = systems[0].breakpoints
-    try:
-        if all(np.array_equal(system.breakpoints, first) for system in systems[1:]):
-            return transition_matrices(systems, method)
-        return np.concatenate([transition_matrices([system], method) for system in systems])
-    except UnsuitableSystemError:
-        return np.concatenate([transition_matrices([system], AdaptiveMagnus()) for system in systems])
+def _matrices(systems: list[PeriodicSystem], method: Method) -> FloatArray:
+    """Transition matrices of systems that form a family, or of each alone where breakpoints move with speed."""
+    if all(np.array_equal(system.breakpoints, systems[0].breakpoints) for system in systems[1:]):
+        return transition_matrices(systems, method)
+    return np.concatenate([transition_matrices([system], method) for system in systems])
 
 
 def _neighbours(slowness: FloatArray) -> list[NDArray[np.intp]]:
@@ -279,11 +284,8 @@ def _windows(
     cuts: int,
 ) -> list[ChebyshevSeries]:
     """Series on one window, or on halves of it where its degree does not suffice."""
-    series = ChebyshevSeries.sampled(evaluate, low, high, motions.degree(low, high))
-    for _ in range(_DOUBLINGS):
-        if series.tail <= tolerance:
-            return [series]
-        series = series.refined(evaluate)
+    degree = motions.degree(low, high)
+    series = ChebyshevSeries.resolved(evaluate, low, high, degree, 2 * degree, tolerance)
     if series.tail <= tolerance:
         return [series]
     if cuts == 0:

@@ -9,21 +9,26 @@ this module is a small frozen dataclass that turns a system into its Φ:
 - :class:`Magnus`: fourth order, aligned, for any system, with a fixed number of sub-intervals;
 - :class:`AdaptiveMagnus`: the same, refined until an error estimate is met;
 - :class:`Collocation`: contact-force collocation, fast and spectrally accurate where it applies.
+
+:func:`with_method` says which of them is used where none is named; the package's docstring compares them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from facegear.floquet import collocation
+from facegear.floquet.collocation import UnsuitableSystemError
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.stepping import Family, aligned_edges, gauss_magnus, midpoint
 from facegear.support.parameters import integer_at_least, keep, within
 from facegear.support.types import ComplexArray, FloatArray
+
+T = TypeVar("T")
 
 # Changes of a transition matrix that show what rounding does to its eigenvalues.
 _CHANGES = 4
@@ -207,8 +212,9 @@ class Collocation:
 
     Raises
     ------
-    collocation.UnsuitableSystemError
-        When used on a system whose free motion has rigid-body, overdamped or defective modes.
+    UnsuitableSystemError
+        When used on a system whose free motion has rigid-body, overdamped or defective modes, or on a family that
+        carries more than the state, as its derivatives.
     """
 
     nodes: int = collocation.DEFAULT_NODES
@@ -224,6 +230,8 @@ class Collocation:
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
+        if family.carries_derivatives:
+            raise UnsuitableSystemError("collocation follows the motion of a system, not its derivatives")
         matrices = collocation.transition_matrices(family.systems, self.nodes, self.panel_angle)
         return np.asarray(family.scale @ matrices @ family.inverse_scale, dtype=float)
 
@@ -236,9 +244,36 @@ class Collocation:
         return family.fastest_angle
 
 
-def default_method(system: PeriodicSystem) -> Method:
-    """Return the method used when none is named: collocation where it applies, else adaptive Magnus."""
-    return Collocation() if collocation.is_suitable(system) else AdaptiveMagnus()
+#: What :func:`with_method` takes where collocation does not apply. It estimates the error before its last
+#: extrapolation: what is left is smaller by a factor of ten at least, see the tests.
+GENERAL = AdaptiveMagnus(1e-9)
+
+
+def with_method(method: Method | None, compute: Callable[[Method], T]) -> T:
+    """Compute something by the method that is named, or by the one that suits: the only place where that is decided.
+
+    Collocation where it applies, else adaptive Magnus, of order 10. One computation, such as a column of a map or a
+    curve along speed, has one method throughout, so that what is interpolated in it is smooth.
+
+    Parameters
+    ----------
+    method : Method, optional
+    compute : callable
+        Is given the method. Called once more if collocation refuses a system.
+
+    Examples
+    --------
+    >>> drifting = PeriodicSystem([[1.0]], [[0.0]], [[0.0]], (), 1.0)
+    >>> with_method(None, lambda method: (method, transition_matrix(drifting, method))[0])
+    AdaptiveMagnus(tolerance=1e-09)
+    """
+    if method is not None:
+        return compute(method)
+    # Asking first whether collocation applies would set it up twice, which is most of the work.
+    try:
+        return compute(Collocation())
+    except UnsuitableSystemError:
+        return compute(GENERAL)
 
 
 def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> FloatArray:
@@ -248,28 +283,14 @@ def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> F
     ----------
     system : PeriodicSystem
     method : Method, optional
-        One of the methods of this module; :func:`default_method` if left out.
+        One of the methods of this module; see :func:`with_method` if left out.
 
     Returns
     -------
     array, shape (2n, 2n)
         Where the period's origin is a breakpoint with a velocity kick, Φ runs from just before it.
     """
-    family = Family([system])
-    scaled = _scaled_transition_matrix(family, method)
-    return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
-
-
-def _scaled_transition_matrix(family: Family, method: Method | None) -> FloatArray:
-    """Φ of a single system, by :func:`default_method` if none is named, shape (2n, 2n)."""
-    # Asking first whether collocation applies would set it up twice, which is most of the work.
-    try:
-        matrices = (method or Collocation()).scaled_transition_matrices(family)
-    except collocation.UnsuitableSystemError:
-        if method is not None:
-            raise
-        matrices = AdaptiveMagnus().scaled_transition_matrices(family)
-    return np.asarray(matrices[0], dtype=float)
+    return np.asarray(transition_matrices([system], method)[0])
 
 
 def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None = None) -> FloatArray:
@@ -280,7 +301,7 @@ def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None
     systems : sequence of PeriodicSystem
         V systems; their periods, constant matrices and load parameters may differ.
     method : Method, optional
-        :class:`AdaptiveMagnus` if left out, which takes the whole family at once.
+        See :func:`with_method` if left out.
 
     Returns
     -------
@@ -292,9 +313,8 @@ def transition_matrices(systems: Sequence[PeriodicSystem], method: Method | None
     ValueError
         If sizes, numbers of loads or breakpoints differ.
     """
-    chosen = AdaptiveMagnus() if method is None else method
     family = Family(systems)
-    scaled = chosen.scaled_transition_matrices(family)
+    scaled = with_method(method, lambda chosen: chosen.scaled_transition_matrices(family))
     return np.asarray(family.inverse_scale @ scaled @ family.scale, dtype=float)
 
 
@@ -308,7 +328,8 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
     -------
     array of complex, shape (2n,)
     """
-    values = _eigenvalues(_scaled_transition_matrix(Family([system]), method))
+    family = Family([system])
+    values = _eigenvalues(with_method(method, lambda chosen: chosen.scaled_transition_matrices(family))[0])
     return np.asarray(values[np.argsort(-np.abs(values), kind="stable")], dtype=complex)
 
 
@@ -319,16 +340,6 @@ def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
     """
     radius = np.abs(multipliers(system, method)[0])
     return float(np.log(radius) / system.period)
-
-
-def spectral_radii(systems: Sequence[PeriodicSystem], method: Method | None = None) -> FloatArray:
-    """Largest modulus of the multipliers of each system of a family, shape (V,).
-
-    As :func:`transition_matrices`, without turning back to the state (q, q̇).
-    """
-    chosen = AdaptiveMagnus() if method is None else method
-    values = _eigenvalues(chosen.scaled_transition_matrices(Family(systems)))
-    return np.asarray(np.abs(values).max(axis=-1), dtype=float)
 
 
 def error_estimate(system: PeriodicSystem, method: Method | None = None) -> float:
@@ -345,14 +356,14 @@ def error_estimate(system: PeriodicSystem, method: Method | None = None) -> floa
     ----------
     system : PeriodicSystem
     method : Method, optional
-        :func:`default_method` if left out.
+        See :func:`with_method` if left out.
 
     Returns
     -------
     float
         In the units of a multiplier [-].
     """
-    judged = _Judged.of(system, default_method(system) if method is None else method)
+    judged = with_method(method, lambda chosen: _Judged.of(system, chosen))
     values = judged.values
 
     def apart(others: ComplexArray) -> float:
@@ -370,7 +381,7 @@ def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> F
     ----------
     system : PeriodicSystem
     method : Method, optional
-        :func:`default_method` if left out.
+        See :func:`with_method` if left out.
 
     Returns
     -------
@@ -384,8 +395,7 @@ def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> F
     >>> np.abs(multipliers(slow_and_fast)) > multiplier_errors(slow_and_fast)
     array([ True, False])
     """
-    chosen = default_method(system) if method is None else method
-    judged = _Judged.of(system, chosen)
+    judged = with_method(method, lambda chosen: _Judged.of(system, chosen))
     values = judged.values[np.argsort(-np.abs(judged.values), kind="stable")]
 
     def apart(others: ComplexArray) -> FloatArray:

@@ -77,7 +77,7 @@ class Radau:
     Raises
     ------
     ValueError
-        When used, if the system has velocity kicks.
+        When used, if the system has velocity kicks, or the family carries derivatives of the state.
     ArithmeticError
         When used, if panels do not resolve the motion.
     """
@@ -98,6 +98,10 @@ class Radau:
             raise ValueError(
                 "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
                 "which Radau panels do not take; use Collocation or AdaptiveMagnus"
+            )
+        if family.carries_derivatives:
+            raise ValueError(
+                "Radau panels take a position and its rate, not their derivatives; use AdaptiveMagnus"
             )
         rule = _rule(self.stages)
         edges = _graded_edges(family, _PANEL_ANGLE, -np.log(self.tolerance))
@@ -136,10 +140,9 @@ def _graded_edges(family: Family, panel_angle: float, dead: float) -> FloatArray
     """
     starts = family.breakpoints
     ends = np.append(starts[1:], 1.0)
-    frozen = np.linalg.eigvals(family.state_matrices((starts + ends) / 2.0))
     parts = []
     for piece, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        rates = frozen[:, piece].ravel()
+        rates = family.frozen_exponents[:, piece].ravel()
         length = end - start
         death = np.minimum(dead / np.maximum(-rates.real, dead / (2.0 * length)), length)
         places = np.unique(np.append(death, [0.0, length]))

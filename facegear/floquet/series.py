@@ -73,6 +73,28 @@ class ChebyshevSeries:
         """Sample a function (K + 1,) -> (K + 1, ...) once."""
         return cls(low, high, evaluate(cls.points_of(low, high, degree)))
 
+    @classmethod
+    def resolved(
+        cls,
+        evaluate: Callable[[FloatArray], FloatArray],
+        low: float,
+        high: float,
+        degree: int,
+        most: int,
+        tolerance: float,
+    ) -> ChebyshevSeries:
+        """Sample a function, and double the degree up to `most` until the :attr:`tail` meets the tolerance.
+
+        Examples
+        --------
+        >>> ChebyshevSeries.resolved(np.exp, 0.0, 1.0, 4, 64, 1e-12).degree
+        16
+        """
+        series = cls.sampled(evaluate, low, high, degree)
+        while series.tail > tolerance and 2 * series.degree <= most:
+            series = series.refined(evaluate)
+        return series
+
     @staticmethod
     def points_of(low: float, high: float, degree: int) -> FloatArray:
         """Chebyshev points of an interval, ascending, shape (degree + 1,)."""

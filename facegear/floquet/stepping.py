@@ -10,7 +10,7 @@ import numpy as np
 from facegear.floquet.collocation import chain
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
-from facegear.support.types import FloatArray
+from facegear.support.types import ComplexArray, FloatArray
 
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB, and small stacks in cache.
 _STACK_ENTRIES = 500_000
@@ -123,13 +123,27 @@ class Family:
         self.inverse_scale = np.linalg.inv(self.scale)
 
     @cached_property
+    def middles(self) -> FloatArray:
+        """Middles of the smooth pieces, fractions of the period, shape (pieces,)."""
+        return np.asarray((self.breakpoints + np.append(self.breakpoints[1:], 1.0)) / 2.0)
+
+    @cached_property
+    def frozen_exponents(self) -> ComplexArray:
+        """Exponents p T0 of the motions of each system frozen at these middles, shape (V, pieces, 2n)."""
+        return np.asarray(np.linalg.eigvals(self.state_matrices(self.middles)), dtype=complex)
+
+    @cached_property
     def frequencies(self) -> FloatArray:
         """Fastest undamped motion of each system frozen in the middle of its smooth pieces [rad/s], shape (V,)."""
-        middle = self.breakpoints + np.diff(np.append(self.breakpoints, 1.0)) / 2.0
-        mass, _, stiffness = self.assembled(middle)
+        mass, _, stiffness = self.assembled(self.middles)
         squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness))
         frequencies = np.sqrt(np.abs(squares).max(axis=(1, 2)))
         return np.where(frequencies > 0.0, frequencies, 1.0 / self.periods)
+
+    @property
+    def carries_derivatives(self) -> bool:
+        """Whether the state holds more than (q, q̇) of a system, as in :mod:`facegear.maps.sensitivity`."""
+        return self.size != self.systems[0].size
 
     @property
     def fastest_angle(self) -> float:
@@ -140,7 +154,7 @@ class Family:
     def exponent_norm(self) -> float:
         """Largest integral of ‖S A S⁻¹‖ over a period of the family [-], from the middles of the smooth pieces."""
         lengths = np.diff(np.append(self.breakpoints, 1.0))
-        norms = np.linalg.norm(self.state_matrices(self.breakpoints + lengths / 2.0), 2, axis=(-2, -1))
+        norms = np.linalg.norm(self.state_matrices(self.middles), 2, axis=(-2, -1))
         return float((norms @ lengths).max())
 
     def assembled(self, fraction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -7,17 +7,17 @@ followed along the whole range of the parameter, and every change of its sign is
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.labels import Combination, combination
 from facegear.floquet.models import Model, parameter_path, replace_parameter
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.multipliers import Method
+from facegear.maps.peaks import Peak, critical_value, largest_between
 from facegear.support.parameters import finite_array, positive
 from facegear.support.types import FloatArray
 
@@ -119,14 +119,14 @@ def largest_growth(
     peak, largest = float(grid[best]), float(sampled[best])
     inner = np.flatnonzero((sampled[1:-1] >= sampled[:-2]) & (sampled[1:-1] >= sampled[2:])) + 1
     for i in inner[np.argsort(-sampled[inner])][:_REFINED].tolist():
-        found = minimize_scalar(
-            lambda speed: -float(growth(np.array([speed]))[0]),
-            bounds=(float(grid[i - 1]), float(grid[i + 1])),
-            method="bounded",
-            options={"xatol": _PEAK * high},
+        speed, value = largest_between(
+            lambda speed: float(growth(np.array([speed]))[0]),
+            float(grid[i - 1]),
+            float(grid[i + 1]),
+            _PEAK * high,
         )
-        if -found.fun > largest:
-            peak, largest = float(found.x), -float(found.fun)
+        if value > largest:
+            peak, largest = speed, value
     return peak, largest
 
 
@@ -178,8 +178,7 @@ def growth_peaks(
     sampled = [peak(value) for value in axis.tolist()]
     speeds, growth = (np.array(part) for part in zip(*sampled, strict=True))
     closing = []
-    for value in _zeros(lambda value: peak(value)[1], axis, growth):
-        speed, _ = peak(value)
+    for value, speed in _zeros(peak, axis, growth):
         if min(speed - low, high - speed) < _EDGE * (high - low):
             raise ArithmeticError(
                 f"at {parameter} = {value:.6g} the largest growth is at an end of the range of speed, {speed:.6g} "
@@ -206,8 +205,13 @@ def _range(lowest_speed: float, highest_speed: float) -> tuple[float, float]:
     return low, high
 
 
-def _zeros(function: Callable[[float], float], axis: FloatArray, values: FloatArray) -> list[float]:
-    """All zeros between samples, those of extremes that cross zero between two samples among them."""
+def _below(peak: Peak, sign: float, value: float) -> float:
+    """Growth rate at a value, so turned that one of the sign lies below zero."""
+    return -sign * peak(value)[1]
+
+
+def _zeros(peak: Peak, axis: FloatArray, values: FloatArray) -> list[tuple[float, float]]:
+    """All zeros between samples and their speeds, those of extremes that cross zero between two samples among them."""
     points = dict(zip(axis.tolist(), values.tolist(), strict=True))
     for i in range(1, axis.size - 1):
         sign = np.sign(values[i])
@@ -217,13 +221,9 @@ def _zeros(function: Callable[[float], float], axis: FloatArray, values: FloatAr
         # A parabola through three samples dips at most by an eighth of its bend below the middle one.
         if three[1] - (three[0] + three[2] - 2.0 * three[1]) > 0.0:
             continue
-        found = minimize_scalar(
-            lambda value, sign=sign: sign * function(value),
-            bounds=(float(axis[i - 1]), float(axis[i + 1])),
-            method="bounded",
-            options={"xatol": 1e-6 * float(axis[i + 1] - axis[i - 1])},
-        )
-        points[float(found.x)] = float(sign * found.fun)
+        low, high = float(axis[i - 1]), float(axis[i + 1])
+        value, height = largest_between(partial(_below, peak, sign), low, high, 1e-6 * (high - low))
+        points[value] = float(-sign * height)
     places = np.array(sorted(points))
     heights = np.array([points[place] for place in places.tolist()])
     zeros = []
@@ -231,5 +231,5 @@ def _zeros(function: Callable[[float], float], axis: FloatArray, values: FloatAr
         if heights[i + 1] == 0.0 and i + 2 < places.size:
             continue  # The next interval begins with this zero.
         a, b = float(places[i]), float(places[i + 1])
-        zeros.append(float(brentq(function, a, b, xtol=_ROOT * abs(b), rtol=_ROOT)))
+        zeros.append(critical_value(peak, a, b, xtol=_ROOT * abs(b), rtol=_ROOT))
     return zeros

@@ -11,13 +11,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from facegear.floquet.labels import combination
 from facegear.floquet.models import Model
-from facegear.floquet.multiplier_curves import method_for
 from facegear.floquet.multipliers import growth_rate
-from facegear.maps.peaks import growth_peak
+from facegear.maps.peaks import Peak, critical_value, growth_peak
 from facegear.maps.tracing import Tongue, tongues
 from facegear.support.parameters import ascending, finite_array, within
 
@@ -222,54 +220,42 @@ class _Search:
 
     def tip(self, level: float, tongue: Tongue) -> Lobe:
         """Follow a tongue upwards to the thickness at which its largest growth rate vanishes."""
-        if tongue.combination.kind == "mean":
-            return self.broad_tip(level, tongue)
-        return self.sharp_tip(level, tongue)
+        flutter = tongue.combination.kind == "mean"
+        peak = self.broad_peak(tongue) if flutter else self.sharp_peak(level, tongue)
+        # A sharp peak is close to its tip as often as not.
+        first, further = (_STEP, 2 * _STEP) if flutter else (0.1 * _STEP, _STEP)
+        low, high = level, level * (1 + first)
+        while peak(high)[1] > 0.0:
+            if high >= self.thickness_range[1]:
+                raise UnstableTopError(tongue, high)
+            low, high = high, high * (1 + further)
+        tip, speed = critical_value(peak, low, high, xtol=self.tolerance / 4)
+        label = tongue.label if flutter else combination(self.model_at(tip).system(speed)).label
+        return Lobe(tip, speed, label)
 
-    def broad_tip(self, level: float, tongue: Tongue) -> Lobe:
-        """Tip of flutter, whose growth rate has no sharp peak over speed: samples of its speeds show the largest."""
-        method = method_for(self.model_at(level), *self.speed_range)
+    def broad_peak(self, tongue: Tongue) -> Peak:
+        """Peak of flutter, whose growth rate is not sharp over speed: samples of its speeds show the largest."""
         speeds = np.unique([*np.linspace(tongue.lower, tongue.upper, _FLUTTER_SAMPLES), tongue.peak]).tolist()
 
-        def rates(thickness_ratio: float) -> list[float]:
+        def peak(thickness_ratio: float) -> tuple[float, float]:
             model = self.model_at(thickness_ratio)
-            return [growth_rate(model.system(speed), method) for speed in speeds]
+            rates = [growth_rate(model.system(speed)) for speed in speeds]
+            best = int(np.argmax(rates))
+            return speeds[best], rates[best]
 
-        low, high, top = level, level * (1 + _STEP), self.thickness_range[1]
-        while max(rates(high)) > 0.0:
-            if high >= top:
-                raise UnstableTopError(tongue, high)
-            low, high = high, min(high * (1 + 2 * _STEP), top)
-        tip = float(brentq(lambda ratio: max(rates(ratio)), low, high, xtol=self.tolerance / 4))
-        return Lobe(tip, speeds[int(np.argmax(rates(tip)))], tongue.label)
+        return peak
 
-    def sharp_tip(self, level: float, tongue: Tongue) -> Lobe:
-        """Tip of a resonance: its peak over speed is followed."""
-        method = method_for(self.model_at(level), *self.speed_range)
+    def sharp_peak(self, level: float, tongue: Tongue) -> Peak:
+        """Peak of a resonance over speed, which is followed."""
         points = [(level, tongue.peak)]
-        growth = tongue.growth_rate
 
-        def peak(thickness_ratio: float) -> float:
-            """Growth rate; remembers the speed."""
+        def peak(thickness_ratio: float) -> tuple[float, float]:
             (x0, y0), (x1, y1) = points[-2] if len(points) > 1 else points[0], points[-1]
             # Natural frequencies are nearly in proportion to thickness, until two points tell more.
             exponent = math.log(y1 / y0) / math.log(x1 / x0) if x1 != x0 else 1.0
             guess = y1 * (thickness_ratio / x1) ** min(max(exponent, 0.0), 2.0)
-            speed, value = growth_peak(
-                self.model_at(thickness_ratio), method, guess, self.speed_range, **_WINDOWS
-            )
+            speed, value = growth_peak(self.model_at(thickness_ratio), guess, self.speed_range, **_WINDOWS)
             points.append((thickness_ratio, speed))
-            return value
+            return speed, value
 
-        step = 0.1 * _STEP
-        low = high = level
-        while growth > 0.0:
-            if high >= self.thickness_range[1]:
-                raise UnstableTopError(tongue, high)
-            low, high = high, high * (1 + step)
-            growth = peak(high)
-            step = _STEP
-        tip = float(brentq(peak, low, high, xtol=self.tolerance / 4))
-        peak(tip)
-        speed = points[-1][1]
-        return Lobe(tip, speed, combination(self.model_at(tip).system(speed), method).label)
+        return peak

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from facegear.floquet.multiplier_curves import MultiplierCurve
+from facegear.maps.peaks import largest_between
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest angle [rad] by which the fastest live motion turns from one sample to the next.
@@ -182,15 +182,13 @@ def _maxima(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]
     # A parabola through three samples rises at most by an eighth of its bend above the middle one.
     bend = 2.0 * middle - left - right
     near = (middle < 0.0) & (middle >= left) & (middle >= right) & (middle + bend > 0.0)
+
+    def radius(speed: float) -> float:
+        return float(curve.spectral_radii(np.array([speed]))[0])
+
+    resolution = SPEED_TOLERANCE * curve.lowest_speed
     return [
-        float(
-            minimize_scalar(
-                lambda speed: -float(curve.spectral_radii(np.array([speed]))[0]),
-                bounds=(float(scan.speeds[i]), float(scan.speeds[i + 2])),
-                method="bounded",
-                options={"xatol": SPEED_TOLERANCE * curve.lowest_speed},
-            ).x
-        )
+        largest_between(radius, float(scan.speeds[i]), float(scan.speeds[i + 2]), resolution)[0]
         for i in np.flatnonzero(near).tolist()
     ]
 

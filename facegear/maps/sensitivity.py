@@ -20,11 +20,10 @@ from typing import Any
 import numpy as np
 
 from facegear.floquet.models import Model, replace_parameter, value_of
-from facegear.floquet.multipliers import AdaptiveMagnus, Method
+from facegear.floquet.multipliers import Method, with_method
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
-from facegear.maps.tracing import Tongue
 from facegear.support.parameters import integer_at_least, positive
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -243,40 +242,6 @@ def _dyads(load: ContactLoad, fraction: FloatArray) -> tuple[FloatArray, FloatAr
     return first, second, third
 
 
-def transition_derivatives(
-    model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
-) -> tuple[FloatArray, FloatArray]:
-    """Floquet transition matrix and its derivatives by parameters.
-
-    Parameters
-    ----------
-    model : Model
-    speed : float
-        Speed [rad/s].
-    parameters : sequence of str
-        P names, as for :func:`system_derivative`.
-    method : Method, optional
-        :class:`facegear.floquet.multipliers.AdaptiveMagnus` if left out; collocation does not apply.
-
-    Returns
-    -------
-    matrix : array, shape (2n, 2n)
-        Φ(T0, 0) of the state (q, q̇).
-    derivatives : array, shape (P, 2n, 2n)
-        dΦ/dp; by the speed with the state taken at the changed period's end.
-
-    Raises
-    ------
-    TypeError, ValueError, ArithmeticError
-        As :func:`system_derivative`; ValueError for systems with velocity kicks.
-    """
-    integer_at_least("number of parameters", len(parameters), 1)
-    family, values = _varied(model, speed, parameters)
-    matrix, scaled = _split(family, method)
-    back, scale = family.inverse_scale, family.scale
-    return back @ matrix @ scale, back @ (scaled / values[:, None, None]) @ scale
-
-
 def _varied(model: Model, speed: float, parameters: Sequence[str]) -> tuple[_VariedFamily, FloatArray]:
     values = np.array([parameter_value(model, speed, name) for name in parameters])
     derivatives = [system_derivative(model, speed, name) for name in parameters]
@@ -285,8 +250,7 @@ def _varied(model: Model, speed: float, parameters: Sequence[str]) -> tuple[_Var
 
 def _split(family: _VariedFamily, method: Method | None) -> tuple[FloatArray, FloatArray]:
     """Φ and dΦ/d ln p, both in scaled coordinates."""
-    chosen = AdaptiveMagnus() if method is None else method
-    both = chosen.scaled_transition_matrices(family)
+    both = with_method(method, lambda chosen: chosen.scaled_transition_matrices(family))
     half = family.size
     return both[0, :half, :half], both[:, half:, :half]
 
@@ -330,8 +294,13 @@ def sensitivity(
 
     Parameters
     ----------
-    model, speed, parameters, method
-        As for :func:`transition_derivatives`.
+    model : Model
+    speed : float
+        Speed [rad/s].
+    parameters : sequence of str
+        P names, as for :func:`system_derivative`.
+    method : Method, optional
+        See :func:`facegear.floquet.multipliers.with_method` if left out; collocation does not apply.
 
     Returns
     -------
@@ -343,7 +312,7 @@ def sensitivity(
         If the critical multiplier is double or nearly so, or two different ones have the same modulus: neither has
         a derivative. Where damping is absent that is so at every border.
     TypeError, ValueError
-        As :func:`transition_derivatives`.
+        As :func:`system_derivative`; ValueError for systems with velocity kicks.
     """
     integer_at_least("number of parameters", len(parameters), 1)
     family, values = _varied(model, speed, parameters)
@@ -388,7 +357,7 @@ def border_derivatives(
     speed : float
         A border of a tongue [rad/s], where max|λ| = 1.
     parameters, method
-        As for :func:`transition_derivatives`; ``"speed"`` is not among them.
+        As for :func:`sensitivity`; ``"speed"`` is not among them.
 
     Returns
     -------
@@ -410,30 +379,3 @@ def border_derivatives(
         )
     change = found.logarithmic_derivatives
     return np.asarray(-change[:-1] / change[-1], dtype=float)
-
-
-def width_derivatives(
-    model: Model, tongue: Tongue, parameters: Sequence[str], method: Method | None = None
-) -> FloatArray:
-    """Differentiate the width of a tongue by parameters.
-
-    Parameters
-    ----------
-    model : Model
-    tongue : Tongue
-        From :func:`facegear.maps.tracing.tongues` of the same model, both borders inside the range looked at.
-    parameters, method
-        As for :func:`border_derivatives`.
-
-    Returns
-    -------
-    array, shape (P,)
-        [rad/s per unit of the parameter].
-
-    Raises
-    ------
-    ValueError, ArithmeticError
-        As :func:`border_derivatives`.
-    """
-    upper, lower = (border_derivatives(model, at, parameters, method) for at in (tongue.upper, tongue.lower))
-    return np.asarray(upper - lower, dtype=float)

@@ -1,9 +1,10 @@
 """Two-parameter stability maps: growth rates over speed and one swept parameter.
 
-A map is made of columns, one a speed. Where only the mass, damping or stiffness of the contacts changes along a
-column, its transition matrices share nearly all their work (:func:`facegear.floquet.columns.column_spectral_radii`).
-Where other matrices change, they are interpolated along the parameter as far as they are smooth, and computed
-cell by cell where they are not. Columns are shared out in chunks over processes by joblib.
+A map is made of columns, one a speed, or of rows, one a value of the parameter. Where only the mass, damping or
+stiffness of the contacts changes along a column, its transition matrices share nearly all their work
+(:func:`facegear.floquet.columns.column_spectral_radii`). Where other matrices change, they are interpolated along the
+parameter, or along speed where that takes fewer of them, as far as they are smooth, and computed cell by cell where
+they are not. Columns and rows are shared out over processes by joblib.
 
 What falls between the columns of a map, tongues narrower than their distance, is found by
 :func:`facegear.maps.tracing.tongues`.
@@ -12,9 +13,9 @@ What falls between the columns of a map, tongues narrower than their distance, i
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from importlib.metadata import version
 from typing import Any
 
@@ -22,16 +23,15 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from facegear.floquet.collocation import UnsuitableSystemError
-from facegear.floquet.columns import GENERAL_ROUTE, column_spectral_radii, interpolated_spectral_radii
+from facegear.floquet.columns import column_spectral_radii, interpolated_spectral_radii
 from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at
+from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import (
-    Collocation,
     Method,
-    default_method,
     multipliers,
     rounding_shift,
     transition_matrices,
+    with_method,
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
@@ -42,7 +42,11 @@ from facegear.support.types import FloatArray
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8
-# Largest difference of spectral radii between a column interpolated along its parameter and a cell computed alone.
+# Matrices that a column takes at least, interpolated along the parameter.
+_COLUMN_MATRICES = 9
+# A row is interpolated a little further than its speeds.
+_BEYOND = 1e-3
+# Largest difference of spectral radii between interpolated matrices and a cell computed alone.
 _INTERPOLATION_CHECK = 1e-8
 
 
@@ -71,8 +75,8 @@ def stability_map(
     values : array_like, shape (V,)
         Values of the parameter, in the unit of its field.
     method : Method, optional
-        Method of :mod:`facegear.floquet.multipliers`. If left out, contact-force collocation where the free motion
-        allows it, else adaptive Magnus.
+        Method of :mod:`facegear.floquet.multipliers`; if left out, what
+        :func:`facegear.floquet.multipliers.with_method` finds to suit each column.
     jobs : int
         Number of workers, as joblib's ``n_jobs``; -1 for all processors, or all workers of the backend that
         ``joblib.parallel_config`` names. On this machine they are threads where only load parameters change, else
@@ -111,17 +115,18 @@ def stability_map(
     values = _checked_values(values)
     name = parameter_path(model, parameter)[-1]
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
-    chunks = _chunks(sweep, speeds)
+    first = [model.system(float(speeds[0])) for model in sweep.models]
+    loads = sweep.load_parameters(first)
+    tasks = _rows(sweep, speeds) if _goes_along_speed(sweep, speeds, loads) else _chunks(sweep, speeds, loads)
     radii = np.empty((values.size, speeds.size))
     # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
-    prefer: Workers = "threads" if all(isinstance(chunk, _LoadChunk) for chunk in chunks) else "processes"
-    for number, result in computed(chunks, "stability map", jobs, progress, cache_directory, prefer):
-        radii[:, number * _CHUNK : number * _CHUNK + result.shape[1]] = result
-    periods = np.concatenate([chunk.periods for chunk in chunks])
+    prefer: Workers = "threads" if all(isinstance(task, _LoadChunk) for task in tasks) else "processes"
+    for number, result in computed(tasks, "stability map", jobs, progress, cache_directory, prefer):
+        radii[tasks[number].place] = result
     error = _error_estimate(sweep, speeds, radii)
 
     return xarray.DataArray(
-        np.log(radii) / periods,
+        np.log(radii) / _periods(sweep, speeds, np.array([system.period for system in first])),
         dims=(name, "speed"),
         coords={
             name: (name, values, {"long_name": ".".join(parameter_path(model, parameter))}),
@@ -212,7 +217,7 @@ class _Sweep:
     def description(self) -> str:
         """Method in words."""
         chosen = "default method" if self.method is None else repr(self.method)
-        return f"{chosen}, transition matrices interpolated along {self.parameter} where they are smooth"
+        return f"{chosen}, transition matrices interpolated along {self.parameter} or speed where they are smooth"
 
 
 def _load_parameters(system: PeriodicSystem) -> list[list[float]]:
@@ -240,17 +245,17 @@ def _same_but_load_parameters(one: PeriodicSystem, other: PeriodicSystem) -> boo
     )
 
 
+Place = tuple[slice, slice]
+
+
 @dataclass(frozen=True, eq=False)
 class _LoadChunk:
     """Columns along which only load parameters change: systems of each speed, parameters (V, 3, loads)."""
 
+    place: Place
     systems: tuple[PeriodicSystem, ...]
     loads: FloatArray
     method: Method | None
-
-    @property
-    def periods(self) -> FloatArray:
-        return np.array([system.period for system in self.systems])
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
@@ -270,11 +275,11 @@ class _LoadChunk:
 
 @dataclass(frozen=True, eq=False)
 class _ModelChunk:
-    """Columns along which anything may change."""
+    """Columns along which anything may change, or one row, of a single value."""
 
+    place: Place
     sweep: _Sweep
     speeds: FloatArray
-    periods: FloatArray
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on: of the model's code, what it makes of the first, middle and last value."""
@@ -295,29 +300,70 @@ class _ModelChunk:
         return np.stack([_model_column(self.sweep, float(speed)) for speed in self.speeds], axis=1)
 
 
-_Chunk = _LoadChunk | _ModelChunk
+@dataclass(frozen=True, eq=False)
+class _Row(_ModelChunk):
+    """A single value at all speeds."""
+
+    def compute(self) -> FloatArray:
+        """Spectral radii, shape (1, speeds)."""
+        (model,) = self.sweep.models
+        return _row(model, self.speeds, self.sweep.method)[np.newaxis]
 
 
-def _chunks(sweep: _Sweep, speeds: FloatArray) -> list[_Chunk]:
+_Task = _LoadChunk | _ModelChunk
+
+
+def _goes_along_speed(sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None) -> bool:
+    """Tell whether series along speed take fewer matrices than any along the parameter; loads share theirs."""
+    if speeds.size <= _COLUMN_MATRICES or loads is not None:
+        return False
+    motions = FrozenMotions.of(sweep.models[-1], 1.0 / float(speeds[-1]), 1.0 / float(speeds[0]))
+    count = len(sweep.values)
+    return count * motions.matrices < speeds.size * min(count, _COLUMN_MATRICES)
+
+
+def _rows(sweep: _Sweep, speeds: FloatArray) -> list[_Task]:
+    """Prepare one row for each value."""
+    return [
+        _Row((slice(i, i + 1), slice(None)), replace(sweep, values=(value,)), speeds)
+        for i, value in enumerate(sweep.values)
+    ]
+
+
+def _chunks(sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None) -> list[_Task]:
     """Prepare neighbouring columns for the fastest route that suits them.
 
-    Load parameters are read from all values at the first speed; at the others the first, middle and last value
-    show whether they, or anything else, depend on both speed and value.
+    Load parameters are those of all values at the first speed; at the others the first, middle and last value show
+    whether they, or anything else, depend on both speed and value.
     """
-    loads = sweep.load_parameters([model.system(float(speeds[0])) for model in sweep.models])
-    chunks: list[_Chunk] = []
+    tasks: list[_Task] = []
     for start in range(0, speeds.size, _CHUNK):
-        part = speeds[start : start + _CHUNK]
+        part = slice(start, start + _CHUNK)
+        place = (slice(None), part)
         if loads is not None:
-            probed = [[sweep.models[probe].system(float(speed)) for probe in sweep.probes] for speed in part]
+            probed = [
+                [sweep.models[probe].system(speed) for probe in sweep.probes]
+                for speed in speeds[part].tolist()
+            ]
             expected = loads[list(sweep.probes)]
             if all(np.array_equal(_or_empty(sweep.load_parameters(row)), expected) for row in probed):
-                chunks.append(_LoadChunk(tuple(row[0] for row in probed), loads, sweep.method))
+                tasks.append(_LoadChunk(place, tuple(row[0] for row in probed), loads, sweep.method))
                 continue
-        periods = np.array([sweep.models[0].system(float(speed)).period for speed in part])
         # A fresh copy: models that have been built need not travel to other processes.
-        chunks.append(_ModelChunk(replace(sweep), part, periods))
-    return chunks
+        tasks.append(_ModelChunk(place, replace(sweep), speeds[part]))
+    return tasks
+
+
+def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray:
+    """T0 [s] of each cell, (V, S), from those at the first speed: the parameter may be a number of teeth."""
+    turned = first * speeds[0]
+    for probe in sweep.probes:
+        for speed in (float(speeds[speeds.size // 2]), float(speeds[-1])):
+            period = sweep.models[probe].system(speed).period
+            if abs(period * speed - turned[probe]) > 1e-12 * turned[probe]:
+                # Not in inverse proportion to speed.
+                return np.array([[m.system(v).period for v in speeds.tolist()] for m in sweep.models])
+    return np.asarray(turned[:, np.newaxis] / speeds, dtype=float)
 
 
 def _or_empty(loads: FloatArray | None) -> FloatArray:
@@ -333,12 +379,7 @@ def _model_column(sweep: _Sweep, speed: float) -> FloatArray:
         return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
     # Coordinates in which entries are of comparable size, the same for the whole column.
     scale = Family(systems[:1]).scale
-    if sweep.method is not None:
-        return _interpolated_column(sweep, speed, sweep.method, scale)
-    try:
-        return _interpolated_column(sweep, speed, Collocation(), scale)
-    except UnsuitableSystemError:
-        return _interpolated_column(sweep, speed, GENERAL_ROUTE, scale)
+    return with_method(sweep.method, lambda method: _interpolated_column(sweep, speed, method, scale))
 
 
 def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: FloatArray) -> FloatArray:
@@ -350,14 +391,29 @@ def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: Flo
         return np.asarray(scale @ matrices @ np.linalg.inv(scale), dtype=float)
 
     radii = interpolated_spectral_radii(evaluate, values)
+    return _witnessed(radii, [partial(model.system, speed) for model in sweep.models], method)
+
+
+def _row(model: Model, speeds: FloatArray, method: Method | None) -> FloatArray:
+    """Spectral radii along one row from transition matrices at some speeds, shape (S,)."""
+    cells = [partial(model.system, speed) for speed in speeds.tolist()]
+    low, high = (1.0 - _BEYOND) * float(speeds[0]), (1.0 + _BEYOND) * float(speeds[-1])
+    try:
+        radii = MultiplierCurve.of(model, low, high, method).spectral_radii(speeds)
+    except ArithmeticError:  # not smooth in speed
+        radii = np.full(speeds.size, np.nan)
+    return _witnessed(radii, cells, method)
+
+
+def _witnessed(
+    radii: FloatArray, cells: Sequence[Callable[[], PeriodicSystem]], method: Method | None
+) -> FloatArray:
+    """Interpolated spectral radii, or those of each system alone if one of them belies the others."""
     # Smooth to the samples is not yet smooth: one cell between them tells.
-    witness = int(0.382 * values.size)
-    if (
-        abs(radii[witness] - _spectral_radius(sweep.models[witness].system(speed), method))
-        > _INTERPOLATION_CHECK
-    ):
-        return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
-    return radii
+    witness = int(0.382 * radii.size)
+    if abs(radii[witness] - _spectral_radius(cells[witness](), method)) <= _INTERPOLATION_CHECK:
+        return radii
+    return np.array([_spectral_radius(cell(), method) for cell in cells])
 
 
 def _same_layout(one: PeriodicSystem, other: PeriodicSystem) -> bool:
@@ -378,8 +434,11 @@ def _error_estimate(sweep: _Sweep, speeds: FloatArray, radii: FloatArray) -> flo
     cells = {(v, s) for v in (0, last_value) for s in (0, last_speed)} | {(last_value // 2, last_speed // 2)}
     worst = 0.0
     for v, s in sorted(cells):
-        system = sweep.models[v].system(float(speeds[s]))
-        method = sweep.method or default_method(system)
-        difference = abs(_spectral_radius(system, method.refined()) - float(radii[v, s]))
-        worst = max(worst, difference + rounding_shift(system, method))
+        system, radius = sweep.models[v].system(float(speeds[s])), float(radii[v, s])
+
+        def error(method: Method, system: PeriodicSystem = system, radius: float = radius) -> float:
+            difference = abs(_spectral_radius(system, method.refined()) - radius)
+            return difference + rounding_shift(system, method)
+
+        worst = max(worst, with_method(sweep.method, error))
     return worst

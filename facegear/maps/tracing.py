@@ -13,14 +13,15 @@ from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from facegear.floquet.labels import Combination, Kind, combination
 from facegear.floquet.models import Model, parameter_path, replace_parameter
-from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve, method_for
+from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, rigid_motions
 from facegear.maps.parallel import computed, parts_of
+from facegear.maps.peaks import largest_between
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
 from facegear.support.parameters import ascending, finite_array, positive, within
 from facegear.support.types import FloatArray
@@ -98,8 +99,7 @@ def tongues(
     lowest_speed, highest_speed : float
         Range looked at [rad/s].
     method : Method, optional
-        Method of :mod:`facegear.floquet.multipliers`; if left out, contact-force collocation where it applies, else
-        adaptive Magnus.
+        Method of :mod:`facegear.floquet.multipliers`; see :func:`facegear.floquet.multipliers.with_method` if left out.
     threshold : float
         Growth in a period, max|λ| − 1, from which a speed counts as unstable [-]. Damping keeps stable multipliers
         clearly inside the unit circle; without damping they lie on it, and rounding alone must not look like growth.
@@ -132,14 +132,13 @@ def tongues(
     hints = finite_array("hints", hints).tolist() if len(hints) else []
     if threshold < _DRIFT:
         _refuse_rigid_motion(model.system(highest_speed))
-    chosen = method_for(model, lowest_speed, highest_speed) if method is None else method
     from tqdm.auto import tqdm
 
     # tqdm itself takes a notebook for a terminal.
     shown = sys.stderr.isatty() if progress is None else progress
     about = f"tongues, about {search_seconds(model, lowest_speed, highest_speed):.0f} s" if shown else ""
     with tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar:
-        curve = MultiplierCurve.of(model, lowest_speed, highest_speed, chosen, bar.update)
+        curve = MultiplierCurve.of(model, lowest_speed, highest_speed, method, bar.update)
         if curve.error > threshold:
             raise ArithmeticError(
                 f"multipliers are known to {curve.error:.2g} only, rounding counted, which is not enough for a "
@@ -147,7 +146,7 @@ def tongues(
                 "facegear.floquet.radau.Radau"
             )
         scan = scan_of(curve.live, threshold, hints)
-    return tuple(_tongue(model, chosen, *run) for run in _runs(curve.live, scan, threshold))
+    return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
 
 
 def search_seconds(model: Model, lowest_speed: float, highest_speed: float) -> float:
@@ -343,10 +342,8 @@ def _peak(curve: MultiplierCurve, low: float, high: float, best: float) -> float
 
     if low >= high:
         return best
-    result = minimize_scalar(
-        lambda speed: -growth(speed), bounds=(low, high), method="bounded", options={"xatol": 1e-9 * high}
-    )
-    return float(result.x) if growth(float(result.x)) >= growth(best) else best
+    speed, value = largest_between(growth, low, high, 1e-9 * high)
+    return speed if value >= growth(best) else best
 
 
 def _tongue(model: Model, method: Method, lower: float, upper: float, peak: float) -> Tongue:

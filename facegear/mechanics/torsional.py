@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.models import Coordinate
+from facegear.floquet.modes import natural_exponents
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
@@ -327,9 +328,9 @@ class Torsional:
 
     def natural_frequencies(self) -> FloatArray:
         """Natural frequencies of the mean system at rest (7-17 with Ω2 = 0), ascending, shape (3,) [rad/s]."""
-        root = 1.0 / np.sqrt(np.diag(self.gearbox.in_si.mass_matrix))
-        squares = np.linalg.eigvalsh(root[:, np.newaxis] * self.mean_stiffness * root)
-        return np.asarray(np.sqrt(squares), dtype=float)
+        mass = self.gearbox.in_si.mass_matrix
+        exponents = natural_exponents(mass, np.zeros_like(mass), self.mean_stiffness)
+        return np.sort(exponents.imag)[len(mass) :]
 
     def natural_speeds(self) -> FloatArray:
         """Speeds of the face gear at which the mesh frequency is a natural one (7-20), shape (3,) [rad/s]."""

@@ -31,15 +31,6 @@ eta = sp.Function("eta")  # trial coordinate
 a_n, b_n = sp.Function("a_n", real=True), sp.Function("b_n", real=True)  # factors of √2 cos nθ and √2 sin nθ
 
 
-class ModalEntries(NamedTuple):
-    """Factors of η̈, η̇ and η in one modal equation, and of m_p η̈ + c_b η̇ + k_b η in its mesh load."""
-
-    mass: Any
-    damping: Any
-    stiffness: Any
-    load: Any
-
-
 class RealPair(NamedTuple):
     """Equations of the pair of real coordinates with n nodal diameters, n > 0."""
 
@@ -100,16 +91,6 @@ def mesh_load_terms(w: Any) -> Any:
     """Mesh load of the field equation (4-1), the rate of the contact point frozen as printed [Pa]."""
     load = m_p * sp.diff(w, t, 2) + c_b * sp.diff(w, t) + k_b * w
     return sp.DiracDelta(r - r_c) * sp.DiracDelta(theta - theta_c) / r * load
-
-
-@cache
-def angular_integral() -> Any:
-    """∫₀^{2π} e^{i(n′-n)θ} dθ = 2π δ_nn′ for integers n and n′."""
-    unequal = sp.Symbol("d", integer=True, nonzero=True)
-    vanishing = sp.simplify(sp.integrate(sp.exp(sp.I * unequal * theta), (theta, 0, 2 * sp.pi)))
-    if vanishing != 0:
-        raise ArithmeticError(f"harmonics are orthogonal round the disk, yet SymPy found {vanishing}")
-    return sp.integrate(1, (theta, 0, 2 * sp.pi)) * sp.KroneckerDelta(n, q)
 
 
 def by_parts(flux: Any, test: Any) -> tuple[Any, Any]:
@@ -182,29 +163,6 @@ def load_entry() -> Any:
     projected = sp.integrate(sp.integrate(work, (r, -sp.oo, sp.oo)), (theta, -sp.oo, sp.oo))
     reaction = m_p * sp.diff(eta(t), t, 2) + c_b * sp.diff(eta(t), t) + k_b * eta(t)
     return sp.simplify(projected / reaction)
-
-
-@cache
-def galerkin_entries() -> ModalEntries:
-    """Modal equation of test function (m, n) and trial function (k, n′): the entries of (4-8) to (4-11).
-
-    Returns
-    -------
-    ModalEntries
-        Mass, damping and stiffness of the disk with Kronecker deltas, the stiffness with L_n as an
-        unevaluated integral, and the entry of the mesh load.
-    """
-    mass, damping, stiffness = disk_coefficients()
-    # δ_nq from the integral round the disk, with the 2π that (4-8) divides by, and δ_mk from (4-7).
-    same_wave = angular_integral() / (2 * sp.pi)
-    same_mode = same_wave * sp.KroneckerDelta(m, k)
-    stress, _ = stress_entry()
-    return ModalEntries(
-        mass=mass * same_mode,
-        damping=damping * same_mode,
-        stiffness=stiffness * same_mode + stress * same_wave,
-        load=load_entry(),
-    )
 
 
 @cache

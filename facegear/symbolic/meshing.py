@@ -124,15 +124,6 @@ def rotation_2s() -> Any:
 
 
 @cache
-def face_gear_surface() -> Any:
-    """Position r_2 = M_2s r_s in Γ2 with φ_2 = m_2s φ_s (3-5), shape (3, 1) [m].
-
-    A point of the face-gear tooth only where the equation of meshing holds.
-    """
-    return rotation_2s().subs(phi_2, m_2s * phi_s) * shaper_surface()
-
-
-@cache
 def relative_velocity() -> Any:
     """Velocity v^(s2) of the shaper's point relative to the face gear, in Γs (3-6), shape (3, 1) [m/s].
 

@@ -7,7 +7,6 @@ closed form: of all pairs together, a period of the mesh is the whole mesh time 
 Every derivation runs on first use and is cached; nothing is derived at import.
 """
 
-from collections.abc import Callable
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -181,19 +180,6 @@ def fourier_coefficients() -> FourierCoefficients:
         parts.append((constant + integral(varying, sp.S.One)).as_immutable())
         parts += [2 * integral(varying, sp.cos(angle)), 2 * integral(varying, sp.sin(angle))]
     return FourierCoefficients(*parts)
-
-
-FOURIER_ARGUMENTS = (s, T_0, r_b1, alpha_c, R_1, R_2, cr, k_m, c_m, k_1, c_1, k_2, c_2)
-"""Arguments of :func:`fourier_function`, in order."""
-
-
-@cache
-def fourier_function() -> Callable[..., Any]:
-    """NumPy twin of :func:`fourier_coefficients`: numbers in the order of `FOURIER_ARGUMENTS` to six matrices."""
-    function: Callable[..., Any] = sp.lambdify(
-        FOURIER_ARGUMENTS, list(fourier_coefficients()), modules="numpy", cse=True
-    )
-    return function
 
 
 @cache

@@ -14,6 +14,7 @@ from facegear.drives import verdict
 from facegear.drives.basis import BasisStep, SettledTongues
 from facegear.drives.drive_file import read_drive_file
 from facegear.floquet.labels import Combination
+from facegear.floquet.modes import mean_growth_rate
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
@@ -57,7 +58,7 @@ class TestDrivenModel:
     def test_flutter_of_the_mean_system_needs_a_following_force(self):
         ratio = CASE_1.drive.geometric_contact_ratio
         rates = [
-            verdict.mean_growth_rate(verdict.driven(CASE_1, force, ratio), 80.0)
+            mean_growth_rate(verdict.driven(CASE_1, force, ratio).system(80.0))
             for force in ("follower", "dead")
         ]
         assert rates[0] > 0 > rates[1]

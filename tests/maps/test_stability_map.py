@@ -1,3 +1,4 @@
+import dataclasses
 import shutil
 import signal
 import subprocess
@@ -104,6 +105,40 @@ def test_meissner_map_is_the_closed_form():
     assert np.abs(chart.values - expected)[unstable].max() < 1e-8
     # On the unit circle a double multiplier is as uncertain as the root of the error of the matrix.
     assert np.abs(chart.values - expected).max() < 1e-5
+
+
+@pytest.mark.parametrize("teeth", [[100.0, 130.0], [90.0, 100.0, 110.0, 130.0]])
+def test_each_cell_has_its_own_period(teeth):
+    chart = stability_map(TRANSVERSE, [60.0, 80.0], "gear_teeth", teeth, jobs=1)
+    for i, number in enumerate(teeth):
+        for j, speed in enumerate((60.0, 80.0)):
+            expected = cell(TRANSVERSE, "gear_teeth", number, speed)
+            assert float(chart[i, j]) == pytest.approx(expected, rel=1e-8)
+
+
+@dataclass(frozen=True)
+class Stepped(Mathieu):
+    """Stiffer from a speed on, and with a period that is not in proportion to its inverse."""
+
+    stiffer_from: float = 1.7
+
+    def system(self, speed: float) -> PeriodicSystem:
+        stiffened = Mathieu(self.modulation, self.damping, 1.0 + 0.1 * (speed > self.stiffer_from))
+        return dataclasses.replace(stiffened.system(speed), period=TURN / speed + 0.01)
+
+
+@pytest.mark.parametrize("model", [Mathieu(), Stepped()])
+def test_many_speeds_of_few_values_are_interpolated_along_speed_where_that_is_smooth(model, monkeypatch):
+    systems = []
+    system = type(model).system
+    monkeypatch.setattr(type(model), "system", lambda self, v: systems.append(v) or system(self, v))
+    speeds = np.linspace(1.5, 2.5, 400)
+    chart = stability_map(model, speeds, "damping", [0.001, 0.01], jobs=1)
+    if type(model) is Mathieu:
+        assert len(systems) < 0.3 * chart.size
+    for number in (0, 57, 153, 222, 399):
+        expected = cell(model, "damping", 0.01, float(speeds[number]))
+        assert float(chart[1, number]) == pytest.approx(expected, abs=1e-8)
 
 
 def test_axes_coordinates_and_attributes():

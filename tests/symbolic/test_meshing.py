@@ -23,6 +23,11 @@ def value(expression):
     return sp.N(expression.subs(POINT), 30)
 
 
+def face_gear_surface():
+    """Position r_2 = M_2s r_s in Γ2 with φ_2 = m_2s φ_s (3-5); on the tooth where the equation of meshing holds."""
+    return s.rotation_2s().subs(s.phi_2, s.m_2s * s.phi_s) * s.shaper_surface()
+
+
 def small(vector):
     return all(abs(entry) < 1e-25 for entry in vector.evalf(30))
 
@@ -71,7 +76,7 @@ def test_relative_velocity_is_3_6_and_the_derivative_of_the_motion():
     assert (s.relative_velocity() - printed).applyfunc(sp.expand) == sp.zeros(3, 1)
     # The shaper's point seen from the face gear moves with d/dt (M_2s r_s); no angular velocity is used here.
     turning = s.rotation_2s().subs(s.phi_2, s.m_2s * s.phi_s)
-    seen = turning.T * s.face_gear_surface().diff(s.phi_s) * s.Omega_s
+    seen = turning.T * face_gear_surface().diff(s.phi_s) * s.Omega_s
     assert small((seen - s.relative_velocity()).subs(POINT))
 
 
@@ -117,7 +122,7 @@ def test_undercut_is_where_the_generated_surface_is_singular():
     def surface(th, ph):
         place = {**POINT, s.theta_s: th, s.phi_s: ph}
         place[s.u_s] = s.meshing_position().subs({k: v for k, v in place.items() if k != s.u_s})
-        return mpmath.matrix([mpmath.mpf(sp.N(entry, 30)) for entry in s.face_gear_surface().subs(place)])
+        return mpmath.matrix([mpmath.mpf(sp.N(entry, 30)) for entry in face_gear_surface().subs(place)])
 
     def cross(at):
         step = mpmath.mpf(10) ** -9

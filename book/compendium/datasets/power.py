@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import partial
 
@@ -14,6 +13,7 @@ from compendium.datasets.inplane import described
 from compendium.datasets.transverse import describe, map_family
 from facegear.design.envelope import critical_power, disk_growth_rate, largest_power, mode_critical_powers
 from facegear.floquet.models import replace_parameter
+from facegear.floquet.modes import mean_growth_rate
 from facegear.mechanics.disk import disk_modes
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, edge_load_stiffness
 from facegear.mechanics.inplane import EdgeLoadStress
@@ -21,7 +21,6 @@ from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import finite_array, rad_per_s, rpm
-from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 
@@ -195,20 +194,7 @@ def mean_growth_map(model: Transverse, speeds_rpm: ArrayLike, values: ArrayLike)
         raise ValueError(f"model must have the rate 'frozen', got {model.contact.rate!r}")
     speeds, heights = finite_array("speeds_rpm", speeds_rpm, "rpm"), finite_array("values", values)
     models = [replace_parameter(model, "stiffness", value) for value in heights.tolist()]
-    # The mean of φφᵀ is the same at every speed.
-    mean = _mean_contact(models[-1])
-    rows = np.empty((heights.size, speeds.size))
-    for j, speed in enumerate(rad_per_s(speeds).tolist()):
-        for i, one in enumerate(models):
-            system = one.system(speed)
-            load = system.loads[0]
-            inverse = np.linalg.inv(system.mass + load.mass * mean)
-            stiffness = inverse @ (system.stiffness + load.stiffness * mean)
-            damping = inverse @ (system.damping + load.damping * mean)
-            scale = math.sqrt(float(np.abs(stiffness).max()))
-            zero = np.zeros_like(mean)
-            state = np.block([[zero, scale * np.eye(len(mean))], [-stiffness / scale, -damping]])
-            rows[i, j] = np.linalg.eigvals(state).real.max()
+    rows = [[mean_growth_rate(one.system(speed)) for speed in rad_per_s(speeds).tolist()] for one in models]
     return xr.Dataset(
         {"growth_rate": _growth(("stiffness", "speed_rpm"), rows, "Growth rate of the mean system")},
         coords={"stiffness": heights, "speed_rpm": speeds},
@@ -217,14 +203,6 @@ def mean_growth_map(model: Transverse, speeds_rpm: ArrayLike, values: ArrayLike)
             "swept = stiffness"
         },
     )
-
-
-def _mean_contact(model: Transverse) -> FloatArray:
-    """Mean of Σ φφᵀ over a mesh period."""
-    system = model.system(1.0)
-    _, _, stiffness = system.fourier(1)
-    found: FloatArray = (stiffness.mean - system.stiffness) / system.loads[0].stiffness
-    return found
 
 
 def power_envelope(

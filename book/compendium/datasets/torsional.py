@@ -1,8 +1,8 @@
 """Arrays of chapter 7's figures, labelled, with units and the tolerances at which they are checked.
 
-Every row of a map is one gearbox: its transition matrices are smooth in 1/speed and are interpolated there, to the
-accuracy of the rule that computes them, so that hundreds of columns cost as much as some tens. Tongues between the
-columns are traced by :func:`facegear.maps.tracing.borders`.
+Every row of a map is one gearbox, whose transition matrices are smooth in 1/speed: :func:`stability_map` interpolates
+them there, so that hundreds of columns cost as much as some tens. Tongues between the columns are traced by
+:func:`facegear.maps.tracing.borders`.
 """
 
 from __future__ import annotations
@@ -19,11 +19,10 @@ from scipy.optimize import minimize_scalar
 from facegear.floquet.hsu import SpeedBand, band_speeds
 from facegear.floquet.modal import ModalExpansion, standard_form
 from facegear.floquet.models import replace_parameter, value_of
-from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.radau import Radau
 from facegear.geometry.kinematics import CentroidPath, ContactPath, SkewLine
-from facegear.maps.parallel import in_processes
+from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import borders, tongues
 from facegear.mechanics.gearboxes import HIGHEST_SPEED_RPM, TorsionalFigure
 from facegear.mechanics.torsional import Torsional
@@ -186,27 +185,6 @@ def moment_arms(model: Torsional, count: int = 201) -> xr.Dataset:
     )
 
 
-def growth_row(model: Torsional, speeds_rpm: ArrayLike) -> FloatArray:
-    """Growth rates of one gearbox over speed.
-
-    Parameters
-    ----------
-    model : Torsional
-    speeds_rpm : array_like, shape (S,)
-        Speeds of the face gear [rpm].
-
-    Returns
-    -------
-    ndarray, shape (S,)
-        ln(max|λ|)/T0 [1/s].
-    """
-    speeds = np.asarray(rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm")))
-    # A little further than asked for: a single speed is a row as well.
-    curve = MultiplierCurve.of(model, 0.999 * float(speeds.min()), 1.001 * float(speeds.max()), METHOD)
-    per_second = speeds * model.drive.gear_teeth / (2 * np.pi)
-    return np.asarray(np.log(curve.spectral_radii(speeds)) * per_second, dtype=float)
-
-
 def growth_map(
     figure: TorsionalFigure, speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = -1, **options: Any
 ) -> xr.Dataset:
@@ -231,11 +209,11 @@ def growth_map(
     """
     array = finite_array("values", values)
     base = figure.model(**options)
-    models = [replace_parameter(base, figure.parameter, value) for value in array.tolist()]
-    rows = in_processes(growth_row, [(model, speeds_rpm) for model in models], jobs)
+    speeds = rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm"))
+    chart = stability_map(base, speeds, figure.parameter, array, method=METHOD, jobs=jobs)
     both = (figure.parameter, "speed_rpm")
     return xr.Dataset(
-        {"growth_rate": _growth(both, np.stack(rows), "Growth rate ln(max|λ|)/T0")},
+        {"growth_rate": _growth(both, chart.values, "Growth rate ln(max|λ|)/T0")},
         coords={figure.parameter: array, "speed_rpm": np.asarray(speeds_rpm, dtype=float)},
         attrs={"parameters": f"{describe(base)}, swept = {figure.parameter}", "scale": figure.scale},
     )

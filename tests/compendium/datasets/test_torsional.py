@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from compendium.datasets import torsional as arrays
-from facegear.floquet.models import replace_parameter
+from facegear.floquet.models import replace_parameter, value_of
 from facegear.floquet.multipliers import growth_rate
 from facegear.mechanics.gearboxes import DRIVE, FIGURES
 from facegear.support.labelled import label_rows
@@ -32,14 +32,15 @@ def test_axes_run_from_end_to_end(name):
 
 
 def test_row_is_that_of_single_systems():
-    model = FIGURES["7.12a"].model()
+    figure = FIGURES["7.12a"]
+    model = figure.model()
     speeds = np.linspace(150.0, 1000.0, 120)
-    row = arrays.growth_row(model, speeds)
+    value = value_of(model, figure.parameter)
+    (row,) = arrays.growth_map(figure, speeds, [value], jobs=1)["growth_rate"].values
     for index in (0, 17, 63, 119):
         assert row[index] == pytest.approx(growth_rate(model.system(rad_per_s(speeds[index]))), abs=1e-6)
-    assert arrays.growth_row(model, [650.0]) == pytest.approx(
-        [growth_rate(model.system(rad_per_s(650.0)))], abs=1e-6
-    )
+    (alone,) = arrays.growth_map(figure, [650.0], [value], jobs=1)["growth_rate"].values
+    assert alone == pytest.approx([growth_rate(model.system(rad_per_s(650.0)))], abs=1e-6)
 
 
 def test_map_has_the_unstable_cells_of_dop853():
