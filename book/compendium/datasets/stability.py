@@ -54,11 +54,11 @@ def swing(depth: float, frequencies: Sequence[float], shown: Sequence[float], cy
         positive imaginary part; ``motion`` (shown, time), time in parametric periods.
     """
     cycles = integer_at_least("cycles", cycles, 1)
-    pairs = np.array([floquet.multipliers(classical.mathieu(w, depth)) for w in frequencies])
+    pairs = np.array([floquet.multipliers(classical.Mathieu(depth).system(w)) for w in frequencies])
     first = np.where(np.abs(pairs.imag) > 0, pairs[:, :1].real + 1j * np.abs(pairs.imag), pairs)[:, 0]
     multiplier = np.stack([first, 1.0 / first], axis=1)
     time = np.linspace(0.0, cycles, 40 * cycles + 1)
-    motion = np.array([_motion(classical.mathieu(w, depth), time) for w in shown])
+    motion = np.array([_motion(classical.Mathieu(depth).system(w), time) for w in shown])
     both = ("frequency", "number")
     return xr.Dataset(
         {
@@ -256,7 +256,7 @@ def damped_charts(frequencies: ArrayLike, depths: ArrayLike, damping_ratios: Seq
         ``growth_rate`` (damping_ratio, depth, frequency) [1/s].
     """
     charts = [
-        chart(lambda w, zeta=zeta: classical.mathieu(w, 1.0, zeta), frequencies, depths, "")  # type: ignore[misc]
+        chart(lambda w, zeta=zeta: classical.Mathieu(1.0, zeta).system(w), frequencies, depths, "")  # type: ignore[misc]
         for zeta in damping_ratios
     ]
     joined = xr.concat(charts, dim=xr.Variable("damping_ratio", list(damping_ratios)), combine_attrs="drop")
@@ -287,7 +287,7 @@ def duty_chart(frequencies: ArrayLike, duties: ArrayLike, depth: float) -> xr.Da
         # Two pieces of constant stiffness: one exponential each is exact.
         np.log(
             family_spectral_radii(
-                lambda w, duty=duty: classical.meissner(w, depth, duty),  # type: ignore[misc]
+                lambda w, duty=duty: classical.Meissner(depth, duty).system(w),  # type: ignore[misc]
                 speeds,
                 floquet.AlignedStepwise(2),
             )
@@ -370,7 +370,7 @@ def hsu_errors(depths: Sequence[float]) -> xr.Dataset:
         Over ``depth``: ``width`` of the first tongue, ``error`` (the larger of its two border errors),
         ``second_width`` of the second tongue, which has no band [rad/s], ω0 = 1.
     """
-    hsu = bands(lambda depth: classical.mathieu(2.0, depth), depths, 6, "")
+    hsu = bands(lambda depth: classical.Mathieu(depth).system(2.0), depths, 6, "")
     curves = transition_curves(depths, 1)["border"].values[:, 0]
     # Tongue 1 has the period 2 T0, tongue 2 the period T0.
     low, high = np.sort(curves[2:], axis=0)
