@@ -26,6 +26,7 @@ REPRODUCED_UNDER_CONVENTION = "reproduced under a stated convention"
 DIFFERS = "differs"
 UNDECIDED = "cannot be decided from the text"
 STATUSES = (REPRODUCED, REPRODUCED_UNDER_CONVENTION, DIFFERS, UNDECIDED)
+HOLDING = (REPRODUCED, REPRODUCED_UNDER_CONVENTION)
 
 _REQUIRED = ("id", "where", "quantity", "printed", "how", "status", "remark")
 _OPTIONAL = ("unit", "convention", "given")

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from facegear.drives.explore import Choice, Quantity, Settings, Study
-from facegear.floquet.models import Coordinate, Model, replace_parameter, value_of
-from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
-from facegear.mechanics.classical import mathieu, meissner
+from facegear.mechanics.classical import Mathieu, Meissner
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
 from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, keep, nonnegative, rad_per_s, within
+from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, rad_per_s
 
 TREGOLD, TRUE_SWEEP = "Tregold, as printed", "true sweep"
 
@@ -146,44 +144,6 @@ def _drive_model(settings: Settings) -> Model:
     )
 
 
-@dataclass(frozen=True)
-class Oscillator:
-    """One coordinate with a periodic stiffness, over the parametric frequency instead of a speed.
-
-    Parameters
-    ----------
-    depth : float
-        ε [-], not negative.
-    damping_ratio : float
-        ϑ [-], from 0 to below 1.
-    duty : float, optional
-        Of a square wave (Meissner's equation); a cosine (Mathieu's) if left out.
-    """
-
-    depth: float
-    damping_ratio: float
-    duty: float | None = None
-
-    def __post_init__(self) -> None:
-        keep(
-            self,
-            depth=nonnegative("depth", self.depth),
-            damping_ratio=within("damping_ratio", self.damping_ratio, 0.0, math.nextafter(1.0, 0.0)),
-            duty=None if self.duty is None else within("duty", self.duty, 0.001, 0.999),
-        )
-
-    @property
-    def coordinates(self) -> tuple[Coordinate, ...]:
-        """Its one coordinate."""
-        return (Coordinate("q", ""),)
-
-    def system(self, speed: float) -> PeriodicSystem:
-        """Equation of motion at a parametric frequency [rad/s], the natural frequency being 1 rad/s."""
-        if self.duty is None:
-            return mathieu(speed, self.depth, self.damping_ratio)
-        return meissner(speed, self.depth, self.duty, self.damping_ratio)
-
-
 COSINE, SQUARE = "cosine (Mathieu)", "square (Meissner)"
 
 
@@ -198,8 +158,10 @@ def oscillator_study() -> Study:
     speed = Quantity("highest_speed", "parametric frequency ω/ω₀", 0.5, 5.0, 2.6, 0.1)
 
     def build(settings: Settings) -> Model:
-        duty = settings["duty"] if settings["wave"] == SQUARE else None
-        return Oscillator(settings["depth"], settings["damping_ratio"], duty)
+        depth, damping_ratio = settings["depth"], settings["damping_ratio"]
+        if settings["wave"] == SQUARE:
+            return Meissner(depth, settings["duty"], damping_ratio)
+        return Mathieu(depth, damping_ratio)
 
     return Study(
         controls,

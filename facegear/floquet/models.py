@@ -238,7 +238,7 @@ def _is_number(value: Any) -> bool:
 
 def _takes_number(part: Any, name: str) -> bool:
     """Whether an optional field that is None now is declared to take a number."""
-    return float in get_args(_declared(part).get(name))
+    return getattr(part, name) is None and float in get_args(_declared(part).get(name))
 
 
 def _declared(part: object) -> dict[str, Any]:

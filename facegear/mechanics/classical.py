@@ -6,19 +6,29 @@ One coordinate with natural frequency ω0, depth of modulation ε and damping ra
 
 is Mathieu's equation for w = cos and Meissner's for a square wave. Two coordinates with one modulated spring have
 combination resonances, and a pair of gears has a mesh stiffness that steps as tooth pairs enter and leave.
+
+Each is a model: what elsewhere is a speed is here the parametric frequency ω [rad/s] itself.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev
-from facegear.support.parameters import finite, finite_array, nonnegative, positive, within
+from facegear.support.parameters import finite, finite_array, keep, nonnegative, positive, within
 from facegear.support.types import FloatArray
+
+# What a duty [-] and a contact ratio [-] may be.
+_DUTIES = (0.001, 0.999)
+_CONTACT_RATIOS = (1.0, 5.0)
+# Critical damping leaves no oscillation.
+_DAMPING_RATIOS = (0.0, float(np.nextafter(1.0, 0.0)))
 
 
 @lru_cache(maxsize=1)
@@ -41,7 +51,7 @@ def square_wave(duty: float) -> PiecewiseChebyshev:
     TypeError, ValueError
         If ``duty`` is outside this range.
     """
-    duty = within("duty", duty, 0.001, 0.999)
+    duty = within("duty", duty, *_DUTIES)
     return PiecewiseChebyshev(np.array([0.0, duty]), np.array([1.0, -1.0])[:, None, None])
 
 
@@ -52,14 +62,14 @@ def tooth_pair_wave(contact_ratio: float, droop: float) -> PiecewiseChebyshev:
     Parameters
     ----------
     contact_ratio, droop : float
-        As in :func:`gear_pair`.
+        As in :class:`GearPair`.
 
     Raises
     ------
     TypeError, ValueError
         If one is outside its range.
     """
-    contact_ratio = within("contact_ratio", contact_ratio, 1.0, 5.0)
+    contact_ratio = within("contact_ratio", contact_ratio, *_CONTACT_RATIOS)
     droop = within("droop", droop, 0.0, 1.0)
     # So close to a whole number a pair leaves as the next one enters.
     nearest = round(contact_ratio)
@@ -77,19 +87,12 @@ def tooth_pair_wave(contact_ratio: float, droop: float) -> PiecewiseChebyshev:
     return PiecewiseChebyshev.fit(total, breakpoints)
 
 
-def hill(
-    frequency: float,
-    depth: float,
-    wave: PiecewiseChebyshev,
-    damping_ratio: float = 0.0,
-    natural_frequency: float = 1.0,
-) -> PeriodicSystem:
+@dataclass(frozen=True)
+class Hill:
     """Hill's equation with one coordinate: any periodic stiffness (2-1).
 
     Parameters
     ----------
-    frequency : float
-        Parametric frequency ω = 2π/T0 [rad/s].
     depth : float
         Depth of modulation ε [-], not negative.
     wave : PiecewiseChebyshev
@@ -99,11 +102,6 @@ def hill(
     natural_frequency : float
         ω0 [rad/s].
 
-    Returns
-    -------
-    PeriodicSystem
-        Its one load has the stiffness ε ω0² and the weight w.
-
     Raises
     ------
     TypeError, ValueError
@@ -111,27 +109,68 @@ def hill(
 
     Examples
     --------
+    A stiffness that rises along each period and falls back at its end.
+
     >>> from facegear.floquet.multipliers import growth_rate
-    >>> round(growth_rate(mathieu(frequency=2.0, depth=0.2)), 4)
-    0.0499
+    >>> saw = PiecewiseChebyshev.fit(lambda x, piece: 2.0 * x - 1.0, [0.0])
+    >>> round(growth_rate(Hill(depth=0.2, wave=saw).system(2.0)), 4)
+    0.0318
     """
-    frequency = positive("frequency", frequency, "rad/s")
-    natural_frequency = positive("natural_frequency", natural_frequency, "rad/s")
-    damping_ratio = within("damping_ratio", damping_ratio, 0.0, np.nextafter(1.0, 0.0))
-    stiffness = nonnegative("depth", depth) * natural_frequency**2
-    load = ContactLoad(PiecewiseChebyshev.constant([1.0]), stiffness=stiffness, weight=wave)
-    return PeriodicSystem(
-        mass=np.eye(1),
-        damping=np.array([[2.0 * damping_ratio * natural_frequency]]),
-        stiffness=np.array([[natural_frequency**2]]),
-        loads=(load,),
-        period=2.0 * np.pi / frequency,
-    )
+
+    depth: float
+    wave: PiecewiseChebyshev
+    damping_ratio: float = 0.0
+    natural_frequency: float = 1.0
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            depth=nonnegative("depth", self.depth),
+            damping_ratio=within("damping_ratio", self.damping_ratio, *_DAMPING_RATIOS),
+            natural_frequency=positive("natural_frequency", self.natural_frequency, "rad/s"),
+        )
+        # A wave that is none is refused here, not at the first frequency.
+        self._load()
+
+    def _load(self) -> ContactLoad:
+        """Return the spring that varies: stiffness ε ω0², weight w."""
+        stiffness = self.depth * self.natural_frequency**2
+        return ContactLoad(PiecewiseChebyshev.constant([1.0]), stiffness=stiffness, weight=self.wave)
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Its one coordinate."""
+        return (Coordinate("q", ""),)
+
+    def system(self, frequency: float) -> PeriodicSystem:
+        """Equation of motion at a parametric frequency.
+
+        Parameters
+        ----------
+        frequency : float
+            ω = 2π/T0 [rad/s].
+
+        Returns
+        -------
+        PeriodicSystem
+            Its one load has the stiffness ε ω0² and the weight w.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `frequency` is not a number greater than 0.
+        """
+        return PeriodicSystem(
+            mass=np.eye(1),
+            damping=np.array([[2.0 * self.damping_ratio * self.natural_frequency]]),
+            stiffness=np.array([[self.natural_frequency**2]]),
+            loads=(self._load(),),
+            period=2.0 * np.pi / positive("frequency", frequency, "rad/s"),
+        )
 
 
-def mathieu(
-    frequency: float, depth: float, damping_ratio: float = 0.0, natural_frequency: float = 1.0
-) -> PeriodicSystem:
+@dataclass(frozen=True)
+class Mathieu:
     """Mathieu's equation q̈ + 2ϑω0 q̇ + ω0² (1 + ε cos ωt) q = 0.
 
     With z = ωt/2 it is the standard form q'' + (a - 2 p cos 2z) q = 0, a = (2ω0/ω)², p = -ε a/2, apart from the
@@ -139,47 +178,107 @@ def mathieu(
 
     Parameters
     ----------
-    frequency, depth, damping_ratio, natural_frequency
-        As in :func:`hill`.
-
-    Returns
-    -------
-    PeriodicSystem
+    depth, damping_ratio, natural_frequency : float
+        ε [-], ϑ [-] and ω0 [rad/s], as of :class:`Hill`.
 
     Raises
     ------
     TypeError, ValueError
-        As :func:`hill`.
+        As :class:`Hill`.
+
+    Examples
+    --------
+    >>> from facegear.floquet.multipliers import growth_rate
+    >>> swing = Mathieu(depth=0.2)
+    >>> round(growth_rate(swing.system(2.0)), 4)
+    0.0499
+
+    Its tongues between two frequencies [rad/s]; at the second one, at 1, there is none with so much damping.
+
+    >>> from facegear.maps.tracing import tongues
+    >>> [tongue.label for tongue in tongues(Mathieu(depth=0.2, damping_ratio=0.02), 0.8, 2.4)]
+    ['(1+1)/1']
     """
-    return hill(frequency, depth, cosine_wave(), damping_ratio, natural_frequency)
+
+    depth: float
+    damping_ratio: float = 0.0
+    natural_frequency: float = 1.0
+
+    def __post_init__(self) -> None:
+        hill = self._hill
+        keep(
+            self,
+            depth=hill.depth,
+            damping_ratio=hill.damping_ratio,
+            natural_frequency=hill.natural_frequency,
+        )
+
+    @cached_property
+    def _hill(self) -> Hill:
+        return Hill(self.depth, cosine_wave(), self.damping_ratio, self.natural_frequency)
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Its one coordinate."""
+        return (Coordinate("q", ""),)
+
+    def system(self, frequency: float) -> PeriodicSystem:
+        """Equation of motion at a parametric frequency ω [rad/s]; see :meth:`Hill.system`."""
+        return self._hill.system(frequency)
 
 
-def meissner(
-    frequency: float,
-    depth: float,
-    duty: float = 0.5,
-    damping_ratio: float = 0.0,
-    natural_frequency: float = 1.0,
-) -> PeriodicSystem:
+@dataclass(frozen=True)
+class Meissner:
     """Meissner's equation: stiffness ω0² (1 + ε) over the first part of the period, ω0² (1 - ε) over the rest.
 
     Parameters
     ----------
-    frequency, depth, damping_ratio, natural_frequency
-        As in :func:`hill`.
+    depth : float
+        ε [-], as of :class:`Hill`.
     duty : float
         The first part as a fraction of the period [-], between 0.001 and 0.999.
-
-    Returns
-    -------
-    PeriodicSystem
+    damping_ratio, natural_frequency : float
+        ϑ [-] and ω0 [rad/s], as of :class:`Hill`.
 
     Raises
     ------
     TypeError, ValueError
-        As :func:`hill`.
+        As :class:`Hill`, and if `duty` is outside its range.
+
+    Examples
+    --------
+    >>> from facegear.floquet.multipliers import growth_rate
+    >>> round(growth_rate(Meissner(depth=0.2).system(2.0)), 4)
+    0.0635
     """
-    return hill(frequency, depth, square_wave(duty), damping_ratio, natural_frequency)
+
+    depth: float
+    duty: float = 0.5
+    damping_ratio: float = 0.0
+    natural_frequency: float = 1.0
+
+    def __post_init__(self) -> None:
+        keep(self, duty=within("duty", self.duty, *_DUTIES))
+        hill = self._hill
+        keep(
+            self,
+            depth=hill.depth,
+            damping_ratio=hill.damping_ratio,
+            natural_frequency=hill.natural_frequency,
+        )
+
+    @cached_property
+    def _hill(self) -> Hill:
+        return Hill(self.depth, square_wave(self.duty), self.damping_ratio, self.natural_frequency)
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Its one coordinate."""
+        return (Coordinate("q", ""),)
+
+    def system(self, frequency: float) -> PeriodicSystem:
+        """Equation of motion at a parametric frequency ω [rad/s]; see :meth:`Hill.system`."""
+        return self._hill.system(frequency)
 
 
 def meissner_trace(
@@ -197,9 +296,9 @@ def meissner_trace(
     Parameters
     ----------
     frequency, depth, duty : array_like
-        As in :func:`meissner`, broadcast against each other.
+        ω [rad/s], and ε and d [-] as of :class:`Meissner`, broadcast against each other.
     damping_ratio, natural_frequency : float
-        As in :func:`meissner`.
+        ϑ [-] and ω0 [rad/s], as of :class:`Meissner`.
 
     Returns
     -------
@@ -220,14 +319,8 @@ def meissner_trace(
     return np.asarray(np.exp(-damping_ratio * natural_frequency * period) * bracket.real)
 
 
-def coupled_pair(
-    frequency: float,
-    depth: float,
-    coupling: float = 0.0,
-    circulation: float = 0.0,
-    damping: float = 0.0,
-    stiffnesses: tuple[float, float] = (1.0, 3.5),
-) -> PeriodicSystem:
+@dataclass(frozen=True)
+class CoupledPair:
     """Two unit masses, the spring of the first one modulated: q̈ + c q̇ + [K + ε cos ωt e1 e1ᵀ] q = 0.
 
     K has `stiffnesses` on its diagonal and κ - χ, κ + χ off it. Coupled by a spring (κ) the pair has resonances of
@@ -236,8 +329,6 @@ def coupled_pair(
 
     Parameters
     ----------
-    frequency : float
-        Parametric frequency ω [rad/s].
     depth : float
         ε [N/m], not negative.
     coupling, circulation : float
@@ -247,49 +338,88 @@ def coupled_pair(
     stiffnesses : tuple of float
         Diagonal of K [N/m], positive.
 
-    Returns
-    -------
-    PeriodicSystem
-
     Raises
     ------
     TypeError, ValueError
         Naming the parameter, or if K has no two positive, distinct eigenvalues.
+
+    Examples
+    --------
+    Near the sum of both natural frequencies [rad/s] the pair is unstable.
+
+    >>> from facegear.floquet.multipliers import growth_rate
+    >>> pair = CoupledPair(depth=0.6, coupling=0.8, damping=0.02)
+    >>> growth_rate(pair.system(2.8)) > 0.0
+    True
     """
-    first, second = (positive(f"stiffnesses[{i}]", stiffnesses[i], "N/m") for i in (0, 1))
-    kappa = finite("coupling", coupling, "N/m")
-    chi = finite("circulation", circulation, "N/m")
-    K = np.array([[first, kappa - chi], [kappa + chi, second]])
-    apart = (first - second) ** 2 / 4.0 + kappa**2 - chi**2
-    if apart <= 0.0 or np.linalg.det(K) <= 0.0:
-        raise ValueError(
-            f"coupling and circulation must leave K two positive, distinct eigenvalues, got coupling={coupling!r}, "
-            f"circulation={circulation!r} with stiffnesses={stiffnesses!r}"
+
+    depth: float
+    coupling: float = 0.0
+    circulation: float = 0.0
+    damping: float = 0.0
+    stiffnesses: tuple[float, float] = (1.0, 3.5)
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            depth=nonnegative("depth", self.depth, "N/m"),
+            coupling=finite("coupling", self.coupling, "N/m"),
+            circulation=finite("circulation", self.circulation, "N/m"),
+            damping=nonnegative("damping", self.damping, "N s/m"),
+            stiffnesses=_two("stiffnesses", self.stiffnesses, "N/m"),
         )
-    load = ContactLoad(
-        PiecewiseChebyshev.constant([1.0, 0.0]),
-        stiffness=nonnegative("depth", depth, "N/m"),
-        weight=cosine_wave(),
-    )
-    return PeriodicSystem(
-        mass=np.eye(2),
-        damping=nonnegative("damping", damping, "N s/m") * np.eye(2),
-        stiffness=K,
-        loads=(load,),
-        period=2.0 * np.pi / positive("frequency", frequency, "rad/s"),
-    )
+        first, second = self.stiffnesses
+        apart = (first - second) ** 2 / 4.0 + self.coupling**2 - self.circulation**2
+        if apart <= 0.0 or np.linalg.det(self._stiffness) <= 0.0:
+            raise ValueError(
+                f"coupling and circulation must leave K two positive, distinct eigenvalues, got "
+                f"coupling={self.coupling!r}, circulation={self.circulation!r} with stiffnesses={self.stiffnesses!r}"
+            )
+
+    @property
+    def _stiffness(self) -> FloatArray:
+        """K [N/m]."""
+        first, second = self.stiffnesses
+        across, around = self.coupling, self.circulation
+        return np.array([[first, across - around], [across + around, second]])
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Displacements of the masses."""
+        return (Coordinate("first mass", "m"), Coordinate("second mass", "m"))
+
+    def system(self, frequency: float) -> PeriodicSystem:
+        """Equations of motion at a parametric frequency.
+
+        Parameters
+        ----------
+        frequency : float
+            ω = 2π/T0 [rad/s].
+
+        Returns
+        -------
+        PeriodicSystem
+            Its one load has the stiffness ε and the weight cos ωt.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `frequency` is not a number greater than 0.
+        """
+        load = ContactLoad(
+            PiecewiseChebyshev.constant([1.0, 0.0]), stiffness=self.depth, weight=cosine_wave()
+        )
+        return PeriodicSystem(
+            mass=np.eye(2),
+            damping=self.damping * np.eye(2),
+            stiffness=self._stiffness,
+            loads=(load,),
+            period=2.0 * np.pi / positive("frequency", frequency, "rad/s"),
+        )
 
 
-def gear_pair(
-    mesh_frequency: float,
-    contact_ratio: float,
-    pair_stiffness: float = 0.6,
-    pair_damping: float = 0.0,
-    droop: float = 0.0,
-    shaft_stiffnesses: tuple[float, float] = (0.5, 1.0),
-    shaft_damping: float = 0.0,
-    masses: tuple[float, float] = (1.0, 1.5),
-) -> PeriodicSystem:
+@dataclass(frozen=True)
+class GearPair:
     """Pinion and gear on sprung shafts with the mesh stiffness of the tooth pairs in contact.
 
     Coordinates are the motions of both base circles along the line of action. A pair's stiffness over its sweep is
@@ -298,8 +428,6 @@ def gear_pair(
 
     Parameters
     ----------
-    mesh_frequency : float
-        ω = 2π/T0 [rad/s], T0 the mesh period.
     contact_ratio : float
         Mesh periods that a pair stays in mesh [-], from 1 to 5.
     pair_stiffness, pair_damping : float
@@ -313,26 +441,80 @@ def gear_pair(
     masses : tuple of float
         Both inertias reduced to the line of action [kg], positive.
 
-    Returns
-    -------
-    PeriodicSystem
-
     Raises
     ------
     TypeError, ValueError
         Naming the parameter and what would be valid.
+
+    Examples
+    --------
+    One tooth pair or two: the stiffness steps twice in a mesh period.
+
+    >>> gears = GearPair(contact_ratio=1.563, shaft_damping=0.02)
+    >>> gears.system(1.1).breakpoints.size
+    2
     """
-    load = ContactLoad(
-        PiecewiseChebyshev.constant([1.0, -1.0]),
-        stiffness=nonnegative("pair_stiffness", pair_stiffness, "N/m"),
-        damping=nonnegative("pair_damping", pair_damping, "N s/m"),
-        weight=tooth_pair_wave(contact_ratio, droop),
-    )
-    shafts = [positive(f"shaft_stiffnesses[{i}]", shaft_stiffnesses[i], "N/m") for i in (0, 1)]
-    return PeriodicSystem(
-        mass=np.diag([positive(f"masses[{i}]", masses[i], "kg") for i in (0, 1)]),
-        damping=nonnegative("shaft_damping", shaft_damping, "N s/m") * np.eye(2),
-        stiffness=np.diag(shafts),
-        loads=(load,),
-        period=2.0 * np.pi / positive("mesh_frequency", mesh_frequency, "rad/s"),
-    )
+
+    contact_ratio: float
+    pair_stiffness: float = 0.6
+    pair_damping: float = 0.0
+    droop: float = 0.0
+    shaft_stiffnesses: tuple[float, float] = (0.5, 1.0)
+    shaft_damping: float = 0.0
+    masses: tuple[float, float] = (1.0, 1.5)
+
+    def __post_init__(self) -> None:
+        keep(
+            self,
+            contact_ratio=within("contact_ratio", self.contact_ratio, *_CONTACT_RATIOS),
+            pair_stiffness=nonnegative("pair_stiffness", self.pair_stiffness, "N/m"),
+            pair_damping=nonnegative("pair_damping", self.pair_damping, "N s/m"),
+            droop=within("droop", self.droop, 0.0, 1.0),
+            shaft_stiffnesses=_two("shaft_stiffnesses", self.shaft_stiffnesses, "N/m"),
+            shaft_damping=nonnegative("shaft_damping", self.shaft_damping, "N s/m"),
+            masses=_two("masses", self.masses, "kg"),
+        )
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Motions of both base circles along the line of action."""
+        return (Coordinate("pinion", "m", "pinion"), Coordinate("gear", "m", "gear"))
+
+    def system(self, mesh_frequency: float) -> PeriodicSystem:
+        """Equations of motion at a mesh frequency.
+
+        Parameters
+        ----------
+        mesh_frequency : float
+            ω = 2π/T0 [rad/s], T0 the mesh period.
+
+        Returns
+        -------
+        PeriodicSystem
+            Its one load has the stiffness and damping of a pair at mid-sweep and the weight of
+            :func:`tooth_pair_wave`.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `mesh_frequency` is not a number greater than 0.
+        """
+        load = ContactLoad(
+            PiecewiseChebyshev.constant([1.0, -1.0]),
+            stiffness=self.pair_stiffness,
+            damping=self.pair_damping,
+            weight=tooth_pair_wave(self.contact_ratio, self.droop),
+        )
+        return PeriodicSystem(
+            mass=np.diag(self.masses),
+            damping=self.shaft_damping * np.eye(2),
+            stiffness=np.diag(self.shaft_stiffnesses),
+            loads=(load,),
+            period=2.0 * np.pi / positive("mesh_frequency", mesh_frequency, "rad/s"),
+        )
+
+
+def _two(name: str, values: tuple[float, float], unit: str) -> tuple[float, float]:
+    """Check one value for each of both coordinates."""
+    first, second = (positive(f"{name}[{i}]", values[i], unit) for i in (0, 1))
+    return first, second

@@ -11,6 +11,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+CHAPTERS = [path for path in NOTEBOOKS if re.match(r"0\d_", path.stem)]
 # Paths of somebody's machine: a root folder people keep files in, or a drive letter.
 MACHINE_PATH = re.compile(r"(?<![\w.:/-])/(home|Users|root|tmp|work|mnt|opt|var)/\w|\b[A-Z]:\\{1,2}\w")
 
@@ -46,6 +47,22 @@ def test_first_code_cell_holds_the_parameters(path: Path) -> None:
     assert 'data_directory = "../data"' in first.source
     assert 'build_directory = "../build"' in first.source
     assert not any("parameters" in cell.metadata.get("tags", []) for cell in rest)
+
+
+@pytest.mark.parametrize("path", CHAPTERS, ids=lambda path: path.stem)
+def test_a_chapter_compares_its_values_and_ends_with_the_check_of_its_figures(path: Path) -> None:
+    *before, last = (cell.source for cell in code(path))
+    assert last == "chapter.finish()"
+    assert [source.splitlines()[-1] for source in before].count("chapter.ledger()") == 1
+
+
+@pytest.mark.book
+def test_every_stored_figure_was_computed_by_the_build() -> None:
+    """A figure that a chapter has stopped handing in: noticed after a build that began with nothing."""
+    stored, computed = (
+        {path.stem for path in (ROOT / folder).glob("*.nc")} for folder in ("data/reference", "build/arrays")
+    )
+    assert stored - computed == set()
 
 
 @notebooks

@@ -14,6 +14,7 @@ from compendium.plotting import meshing, schematics, stability
 from facegear import Drive
 from facegear.floquet import multipliers as floquet
 from facegear.geometry import solids
+from facegear.maps.stability_map import stability_map
 from facegear.mechanics import classical
 from facegear.plotting import interactive, style
 from tests.figures import texts
@@ -113,11 +114,11 @@ def test_slider_has_a_picture_with_a_description_for_every_step():
     ] == [True] * 2
 
 
-GEARS = classical.gear_pair(1.1, 1.563, droop=0.4, shaft_damping=0.02)
-CHART = stability_arrays.chart(
-    lambda w: classical.mathieu(w, 1.0), np.linspace(0.5, 2.5, 9), np.linspace(0.0, 0.9, 7), "Mathieu"
-)
-BANDS = stability_arrays.bands(lambda e: classical.mathieu(2.0, e), [0.1, 0.5], 2, "Mathieu")
+GEARS = classical.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
+MATHIEU = classical.Mathieu(1.0)
+GROWTH = stability_map(MATHIEU, np.linspace(0.5, 2.5, 9), "depth", np.linspace(0.0, 0.9, 7), jobs=1)
+CHART = stability_arrays.chart(GROWTH, "Mathieu")
+BANDS = stability_arrays.bands(MATHIEU, [0.1, 0.5], 2, "Mathieu")
 DAMPED = stability_arrays.damped_charts(np.linspace(1.5, 2.5, 5), np.linspace(0.0, 0.9, 7), [0.05])
 
 

@@ -24,7 +24,7 @@ from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.stability_map import stability_map
 from facegear.mechanics import cases
-from facegear.mechanics.classical import meissner_trace
+from facegear.mechanics.classical import Meissner, meissner_trace
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import shape_vector
 from facegear.mechanics.edge_stiffness import DrivingForce
@@ -32,7 +32,7 @@ from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
 
-SQUARE = studies.Oscillator(depth=0.6, damping_ratio=0.0, duty=0.4)
+SQUARE = Meissner(depth=0.6, duty=0.4)
 FREQUENCIES = np.linspace(0.4, 2.6, 23)
 DEPTHS = np.linspace(0.0, 0.9, 11)
 

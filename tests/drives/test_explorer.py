@@ -13,6 +13,7 @@ from facegear.drives import cell_figure as cell
 from facegear.drives import explore, explorer, studies
 from facegear.drives.cell import cell_detail
 from facegear.mechanics import cases
+from facegear.mechanics.classical import Mathieu
 from facegear.support.parameters import rad_per_s
 
 STUDY = replace(studies.oscillator_study(), columns=12, rows=8)
@@ -187,7 +188,7 @@ def test_cell_of_a_gearbox_names_its_coordinates():
 
 
 def test_borders_beyond_what_was_searched_are_not_given_as_borders():
-    detail = cell_detail(studies.Oscillator(0.9, 0.0), 1.9)
+    detail = cell_detail(Mathieu(0.9), 1.9)
     low, high = detail.searched
     clipped = replace(detail, tongue=replace(detail.tongue, lower=low, upper=high))
     depth = STUDY.swept("depth")

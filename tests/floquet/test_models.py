@@ -24,6 +24,7 @@ class Shaft:
     stiffness: float
     limit: float | None = None
     name: str = "shaft"
+    ends: tuple[float, float] = (0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def test_names_that_occur_twice_take_the_dotted_form():
     assert replace_parameter(PAIR, "second.stiffness", 3.0) == TwoShafts(Shaft(1.0), Shaft(3.0))
 
 
-def test_optional_numbers_are_parameters_and_text_is_not():
+def test_optional_numbers_are_parameters_and_text_and_tuples_are_not():
     assert parameter_names(PAIR) == (
         "teeth",
         "first.stiffness",

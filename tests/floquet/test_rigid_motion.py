@@ -13,7 +13,7 @@ from facegear.floquet.periodic import ContactLoad, PeriodicSystem, rigid_motions
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.tracing import tongues
 from facegear.mechanics.cases import FIGURES
-from facegear.mechanics.classical import cosine_wave, mathieu
+from facegear.mechanics.classical import Mathieu, cosine_wave
 from facegear.mechanics.gearboxes import FIGURES as GEARBOXES
 
 
@@ -51,7 +51,7 @@ def test_what_is_left_of_two_free_masses_is_mathieus_equation(depth, damping_rat
     assert motion @ system.mass @ motion == pytest.approx(1.0, rel=1e-12)
     left = without_rigid_motion(system)
     assert left.size == 1
-    found, closed = multipliers(left), multipliers(mathieu(speed, depth, damping_ratio))
+    found, closed = multipliers(left), multipliers(Mathieu(depth, damping_ratio).system(speed))
     distance = np.abs(found[:, None] - closed[None, :]).min(axis=1)
     # Where the two meet the root of rounding is left.
     assert distance.max() < (1e-9 if abs(closed[0] - closed[1]) > 1e-3 else 1e-4)
@@ -62,12 +62,7 @@ def test_tongues_name_the_motion_and_find_all_when_it_is_out():
     with pytest.raises(ValueError, match=r"1 rigid-body motion\(s\), along \(1, 1\).*WithoutRigidMotion"):
         tongues(pair, 0.8, 2.5)
 
-    @dataclass(frozen=True)
-    class Distance:
-        def system(self, speed):
-            return mathieu(speed, 0.3, 0.01)
-
-    found, expected = tongues(WithoutRigidMotion(pair), 0.8, 2.5), tongues(Distance(), 0.8, 2.5)
+    found, expected = tongues(WithoutRigidMotion(pair), 0.8, 2.5), tongues(Mathieu(0.3, 0.01), 0.8, 2.5)
     assert len(found) == len(expected) == 2
     for one, other in zip(found, expected, strict=True):
         assert (one.lower, one.upper) == pytest.approx((other.lower, other.upper), rel=1e-7)

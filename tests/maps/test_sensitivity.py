@@ -21,7 +21,7 @@ from facegear.maps.sensitivity import (
     system_derivative,
 )
 from facegear.maps.tracing import tongues
-from facegear.mechanics import classical
+from facegear.mechanics.classical import CoupledPair, Mathieu, Meissner
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.plate import Body
@@ -54,23 +54,7 @@ class Oscillator:
         return PeriodicSystem(np.eye(1), [[2.0 * self.damping_ratio * w]], [[w**2]], (), period=TURN / speed)
 
 
-@dataclass(frozen=True)
-class Mathieu:
-    depth: float = 0.3
-    damping_ratio: float = 0.02
-    natural_frequency: float = 1.0
-
-    def system(self, speed):
-        return classical.mathieu(speed, self.depth, self.damping_ratio, self.natural_frequency)
-
-
-@dataclass(frozen=True)
-class Meissner:
-    depth: float = 0.4
-    damping_ratio: float = 0.03
-
-    def system(self, speed):
-        return classical.meissner(speed, self.depth, 0.3, self.damping_ratio)
+SWING = Mathieu(0.3, 0.02)
 
 
 def torsional(**options):
@@ -106,7 +90,7 @@ def test_oscillator_has_the_closed_form():
 
 
 def test_meissner_has_the_closed_form():
-    model, speed = Meissner(), 2.0
+    model, speed = Meissner(0.4, 0.3, 0.03), 2.0
 
     def largest(depth, zeta, frequency):
         period = 2 * mpmath.pi / frequency
@@ -190,7 +174,7 @@ def test_units_of_mass_and_time_change_no_multiplier(speed_rpm, damping):
 
 
 def test_width_of_a_tongue_moves_as_its_derivative_says():
-    model = Mathieu()
+    model = SWING
     (tongue,) = tongues(model, 1.5, 2.5)
     names = ("depth", "damping_ratio", "natural_frequency")
     upper, lower = (border_derivatives(model, at, names) for at in (tongue.upper, tongue.lower))
@@ -239,7 +223,7 @@ def test_borders_follow_the_characteristic_curves_as_damping_goes_to_zero():
 
 
 def test_method_is_the_callers_choice():
-    model = Mathieu()
+    model = SWING
     coarse = sensitivity(model, 2.0, ("depth",), Magnus(8)).multiplier_derivatives
     fine = sensitivity(model, 2.0, ("depth",), Magnus(16)).multiplier_derivatives
     exact = sensitivity(model, 2.0, ("depth",)).multiplier_derivatives
@@ -258,15 +242,8 @@ def test_derivative_of_a_system_is_exact_where_it_is_linear():
 
 class TestRefusals:
     def test_two_pairs_of_one_modulus(self):
-        @dataclass(frozen=True)
-        class Pair:
-            depth: float = 0.1
-
-            def system(self, speed):
-                return classical.coupled_pair(speed, self.depth, coupling=0.2)
-
         with pytest.raises(ArithmeticError, match="no derivative"):
-            sensitivity(Pair(), 1.3, ("depth",))
+            sensitivity(CoupledPair(0.1, coupling=0.2), 1.3, ("depth",))
 
     def test_double_multiplier(self):
         # Half a turn a period: both multipliers of the undamped oscillator are -1.
@@ -287,15 +264,15 @@ class TestRefusals:
 
     def test_unknown_parameter(self):
         with pytest.raises(ValueError, match="parameter must be one of"):
-            sensitivity(Mathieu(), 2.0, ("stiffness",))
+            sensitivity(SWING, 2.0, ("stiffness",))
 
     def test_no_parameters(self):
         with pytest.raises(ValueError, match="number of parameters"):
-            sensitivity(Mathieu(), 2.0, ())
+            sensitivity(SWING, 2.0, ())
 
     def test_speed_that_is_no_border(self):
         with pytest.raises(ValueError, match="speed must be a border"):
-            border_derivatives(Mathieu(), 2.0, ("depth",))
+            border_derivatives(SWING, 2.0, ("depth",))
 
     def test_rough_dependence(self):
         @dataclass(frozen=True)

@@ -22,22 +22,22 @@ def deviation(system, written_out):
 @pytest.mark.parametrize(
     ("system", "written_out"),
     [
-        (classical.mathieu(1.7, 0.4, 0.03), independent.mathieu(1.7, 0.4, 0.03)),
-        (classical.meissner(0.9, 0.6, 0.3, 0.02), independent.meissner(0.9, 0.6, 0.3, 0.02)),
+        (classical.Mathieu(0.4, 0.03).system(1.7), independent.mathieu(1.7, 0.4, 0.03)),
+        (classical.Meissner(0.6, 0.3, 0.02).system(0.9), independent.meissner(0.9, 0.6, 0.3, 0.02)),
         (
-            classical.coupled_pair(1.3, 0.5, coupling=0.8, damping=0.02),
+            classical.CoupledPair(0.5, coupling=0.8, damping=0.02).system(1.3),
             independent.coupled_pair(1.3, 0.5, 0.8, 0.0, 0.02),
         ),
         (
-            classical.coupled_pair(0.7, 0.5, circulation=0.8, damping=0.02),
+            classical.CoupledPair(0.5, circulation=0.8, damping=0.02).system(0.7),
             independent.coupled_pair(0.7, 0.5, 0.0, 0.8, 0.02),
         ),
         (
-            classical.gear_pair(1.1, 1.563, droop=0.4, shaft_damping=0.02),
+            classical.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1),
             independent.gear_pair(1.1, 1.563, 0.4, 0.02),
         ),
         (
-            classical.gear_pair(1.1, 2.4, droop=1.0, shaft_damping=0.02),
+            classical.GearPair(2.4, droop=1.0, shaft_damping=0.02).system(1.1),
             independent.gear_pair(1.1, 2.4, 1.0, 0.02),
         ),
     ],
@@ -48,7 +48,10 @@ def test_systems_are_those_of_the_equations(system, written_out):
 
 
 def test_natural_frequency_only_scales_time():
-    slow, fast = classical.mathieu(1.9, 0.4, 0.02), classical.mathieu(9.5, 0.4, 0.02, natural_frequency=5.0)
+    slow, fast = (
+        classical.Mathieu(0.4, 0.02).system(1.9),
+        classical.Mathieu(0.4, 0.02, natural_frequency=5.0).system(9.5),
+    )
     assert floquet.growth_rate(fast) == pytest.approx(5.0 * floquet.growth_rate(slow), rel=1e-9)
 
 
@@ -60,7 +63,7 @@ def test_natural_frequency_only_scales_time():
     damping_ratio=st.floats(0.0, 0.3),
 )
 def test_meissner_trace_in_closed_form(frequency, depth, duty, damping_ratio):
-    system = classical.meissner(frequency, depth, duty, damping_ratio)
+    system = classical.Meissner(depth, duty, damping_ratio).system(frequency)
     # Constant in each of two pieces: one exponential a piece is exact.
     matrix = floquet.transition_matrix(system, floquet.AlignedStepwise(2))
     expected = classical.meissner_trace(frequency, depth, duty, damping_ratio)
@@ -88,36 +91,36 @@ def test_tooth_pairs_in_mesh(contact_ratio, pieces, droop):
 def test_symmetric_coupling_has_the_sum_and_circulation_the_difference():
     damping = 0.02
     first, second = (math.sqrt(s) for s in np.linalg.eigvalsh([[1.0, 0.8], [0.8, 3.5]]))
-    spring = classical.coupled_pair(first + second, 0.6, coupling=0.8, damping=damping)
+    spring = classical.CoupledPair(0.6, coupling=0.8, damping=damping).system(first + second)
     assert floquet.growth_rate(spring) > 1e-3
-    spring = classical.coupled_pair(second - first, 0.3, coupling=0.8, damping=damping)
+    spring = classical.CoupledPair(0.3, coupling=0.8, damping=damping).system(second - first)
     assert floquet.growth_rate(spring) < -1e-3
     first, second = (math.sqrt(s) for s in sorted(np.linalg.eigvals([[1.0, -0.8], [0.8, 3.5]]).real))
-    crossed = classical.coupled_pair(second - first, 0.3, circulation=0.8, damping=damping)
+    crossed = classical.CoupledPair(0.3, circulation=0.8, damping=damping).system(second - first)
     assert floquet.growth_rate(crossed) > 1e-3
-    crossed = classical.coupled_pair(first + second, 0.3, circulation=0.8, damping=damping)
+    crossed = classical.CoupledPair(0.3, circulation=0.8, damping=damping).system(first + second)
     assert floquet.growth_rate(crossed) < -1e-3
 
 
 @pytest.mark.parametrize(
     ("build", "name"),
     [
-        (lambda: classical.mathieu(0.0, 0.1), "frequency"),
-        (lambda: classical.mathieu(math.nan, 0.1), "frequency"),
-        (lambda: classical.mathieu(1.0, -0.1), "depth"),
-        (lambda: classical.mathieu(1.0, 0.1, 1.0), "damping_ratio"),
-        (lambda: classical.mathieu(1.0, 0.1, natural_frequency=-1.0), "natural_frequency"),
-        (lambda: classical.meissner(1.0, 0.1, 1.0), "duty"),
-        (lambda: classical.hill(1.0, 0.1, PiecewiseChebyshev.constant([1.0, 2.0])), "weight"),
-        (lambda: classical.coupled_pair(1.0, 0.1, circulation=1.3), "circulation"),
-        (lambda: classical.coupled_pair(1.0, 0.1, coupling=2.0), "coupling"),
-        (lambda: classical.coupled_pair(1.0, 0.1, stiffnesses=(1.0, 0.0)), r"stiffnesses\[1\]"),
-        (lambda: classical.coupled_pair(1.0, 0.1, damping=-0.1), "damping"),
-        (lambda: classical.gear_pair(1.0, 0.9), "contact_ratio"),
-        (lambda: classical.gear_pair(1.0, 1.5, droop=1.2), "droop"),
-        (lambda: classical.gear_pair(1.0, 1.5, pair_stiffness=-1.0), "pair_stiffness"),
-        (lambda: classical.gear_pair(1.0, 1.5, masses=(1.0, -1.0)), r"masses\[1\]"),
-        (lambda: classical.gear_pair(-1.0, 1.5), "mesh_frequency"),
+        (lambda: classical.Mathieu(0.1).system(0.0), "frequency"),
+        (lambda: classical.Mathieu(0.1).system(math.nan), "frequency"),
+        (lambda: classical.Mathieu(-0.1), "depth"),
+        (lambda: classical.Mathieu(0.1, 1.0), "damping_ratio"),
+        (lambda: classical.Mathieu(0.1, natural_frequency=-1.0), "natural_frequency"),
+        (lambda: classical.Meissner(0.1, 1.0), "duty"),
+        (lambda: classical.Hill(0.1, PiecewiseChebyshev.constant([1.0, 2.0])), "weight"),
+        (lambda: classical.CoupledPair(0.1, circulation=1.3), "circulation"),
+        (lambda: classical.CoupledPair(0.1, coupling=2.0), "coupling"),
+        (lambda: classical.CoupledPair(0.1, stiffnesses=(1.0, 0.0)), r"stiffnesses\[1\]"),
+        (lambda: classical.CoupledPair(0.1, damping=-0.1), "damping"),
+        (lambda: classical.GearPair(0.9), "contact_ratio"),
+        (lambda: classical.GearPair(1.5, droop=1.2), "droop"),
+        (lambda: classical.GearPair(1.5, pair_stiffness=-1.0), "pair_stiffness"),
+        (lambda: classical.GearPair(1.5, masses=(1.0, -1.0)), r"masses\[1\]"),
+        (lambda: classical.GearPair(1.5).system(-1.0), "mesh_frequency"),
     ],
 )
 def test_bad_input_is_one_clear_error(build, name):
@@ -127,4 +130,4 @@ def test_bad_input_is_one_clear_error(build, name):
 
 def test_text_is_no_number():
     with pytest.raises(TypeError, match="depth"):
-        classical.mathieu(1.0, "0.1")
+        classical.Mathieu("0.1")

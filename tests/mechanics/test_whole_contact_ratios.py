@@ -8,7 +8,7 @@ import pytest
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.kinematics import CentroidPath, ContactPath, SkewLine
 from facegear.mechanics import cases
-from facegear.mechanics.classical import gear_pair
+from facegear.mechanics.classical import GearPair
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.disk import shape_vector, unit_shape
 from facegear.mechanics.gearboxes import FIGURES
@@ -36,7 +36,7 @@ SYSTEMS = {
         name: lambda ratio, path=path: torsional(ratio, path)
         for name, path in (("skew_line", SkewLine), ("contact_path", ContactPath), ("centroid", CentroidPath))
     },
-    "gear pair": lambda ratio: gear_pair(0.9, ratio, pair_damping=0.1),
+    "gear pair": lambda ratio: GearPair(ratio, pair_damping=0.1).system(0.9),
 }
 EVERYWHERE = [
     (name, whole) for name in SYSTEMS for whole in (1, 2) if whole > 1 or name not in ("total", "centroid")

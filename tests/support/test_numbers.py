@@ -14,7 +14,6 @@ from facegear.design import cancellation, envelope
 from facegear.design import teeth as tooth_design
 from facegear.design.body import Requirements
 from facegear.drives.explore import Quantity
-from facegear.drives.studies import Oscillator
 from facegear.floquet.columns import column_spectral_radii
 from facegear.floquet.models import is_part
 from facegear.floquet.multipliers import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus, Stepwise
@@ -59,6 +58,13 @@ def fields(part, *left_out):
     }
 
 
+CLASSICAL = (
+    classical.Hill(0.25, classical.cosine_wave(), 0.125, 3.0),
+    classical.Mathieu(0.25, 0.125, 3.0),
+    classical.Meissner(0.25, 0.25, 0.1, 3.0),
+    classical.CoupledPair(0.3, 0.1, 0.2, 0.1),
+    classical.GearPair(1.3, 0.7, 0.1, 0.3, shaft_damping=0.1),
+)
 DATACLASSES = [
     DRIVE,
     STEEL,
@@ -76,6 +82,7 @@ DATACLASSES = [
     system(stiffness=1.0),
     ScaledModulation(FIGURES["7.12a"].model(), 0.5),
     Quantity("name", "label", 1.0, 4.0, 2.0, 0.5, 2.0),
+    *CLASSICAL,
     *(
         Stepwise(100),
         AlignedStepwise(100),
@@ -86,39 +93,23 @@ DATACLASSES = [
     ),
 ]
 FUNCTIONS = {
-    "mathieu": (
-        classical.mathieu,
-        {"frequency": 2.0, "depth": 0.25, "damping_ratio": 0.125, "natural_frequency": 3.0},
-    ),
-    "meissner": (classical.meissner, {"frequency": 2.0, "depth": 0.25, "duty": 0.25, "damping_ratio": 0.1}),
     "meissner_trace": (
         classical.meissner_trace,
         {"frequency": 2.0, "depth": 0.3, "duty": 0.25, "damping_ratio": 0.1, "natural_frequency": 1.1},
     ),
-    "coupled_pair": (
-        lambda first, second, **x: classical.coupled_pair(**x, stiffnesses=(first, second)),
-        {
-            "frequency": 2.0,
-            "depth": 0.3,
-            "coupling": 0.1,
-            "circulation": 0.2,
-            "damping": 0.1,
-            "first": 1.0,
-            "second": 3.0,
-        },
+    "stiffnesses": (
+        lambda first, second: classical.CoupledPair(0.3, stiffnesses=(first, second)),
+        {"first": 1.0, "second": 3.0},
     ),
-    "gear_pair": (
-        lambda mass, shaft, **x: classical.gear_pair(**x, masses=(mass, 1), shaft_stiffnesses=(shaft, 1)),
-        {
-            "mesh_frequency": 2.0,
-            "contact_ratio": 1.3,
-            "pair_stiffness": 0.7,
-            "pair_damping": 0.1,
-            "droop": 0.3,
-            "mass": 3.0,
-            "shaft": 0.7,
-        },
+    "masses": (
+        lambda mass, shaft: classical.GearPair(1.3, masses=(mass, 1), shaft_stiffnesses=(shaft, 1)),
+        {"mass": 3.0, "shaft": 0.7},
     ),
+    "frequency": (
+        lambda **x: [model.system(**x) for model in CLASSICAL[:-1]],
+        {"frequency": 2.0},
+    ),
+    "mesh_frequency": (CLASSICAL[-1].system, {"mesh_frequency": 2.0}),
     "mesh_period": (lambda speed: mesh_period(DRIVE, speed), {"speed": 50.3}),
     "mesh_stiffness": (lambda c: torsional.mesh_stiffness(BOX.drive, c), {"c": 0.3}),
     "cylinder_inertia": (torsional.cylinder_inertia, {"radius": 0.1, "height": 0.3, "density": 7000.0}),
@@ -170,11 +161,13 @@ FUNCTIONS = {
     ),
     "system": (lambda speed: Transverse(BODY, LOAD).system(speed), {"speed": 50.3}),
     "tongues": (
-        lambda low, high, threshold: tongues(Oscillator(0.3, 0.01), low, high, threshold=threshold),
+        lambda low, high, threshold: tongues(classical.Mathieu(0.3, 0.01), low, high, threshold=threshold),
         {"low": 1.7, "high": 2.3, "threshold": 1e-3},
     ),
     "stability_map": (
-        lambda speed, value: stability_map(Oscillator(0.3, 0.01), [speed], "depth", [value], jobs=1).values,
+        lambda speed, value: (
+            stability_map(classical.Mathieu(0.3, 0.01), [speed], "depth", [value], jobs=1).values
+        ),
         {"speed": 1.7, "value": 0.3},
     ),
     "column_spectral_radii": (

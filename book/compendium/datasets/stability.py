@@ -6,7 +6,7 @@ and the growth rate starts like a square root, so that rounding of 1e-15 in the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -18,9 +18,11 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from facegear.floquet import multipliers as floquet
-from facegear.floquet.columns import column_spectral_radii, family_spectral_radii
+from facegear.floquet.columns import family_spectral_radii
 from facegear.floquet.hsu import ResonanceBand, resonance_bands
+from facegear.floquet.models import Model, replace_parameter
 from facegear.floquet.periodic import PeriodicSystem
+from facegear.maps.stability_map import stability_map
 from facegear.mechanics import classical
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import finite_array, integer_at_least
@@ -54,11 +56,11 @@ def swing(depth: float, frequencies: Sequence[float], shown: Sequence[float], cy
         positive imaginary part; ``motion`` (shown, time), time in parametric periods.
     """
     cycles = integer_at_least("cycles", cycles, 1)
-    pairs = np.array([floquet.multipliers(classical.mathieu(w, depth)) for w in frequencies])
+    pairs = np.array([floquet.multipliers(classical.Mathieu(depth).system(w)) for w in frequencies])
     first = np.where(np.abs(pairs.imag) > 0, pairs[:, :1].real + 1j * np.abs(pairs.imag), pairs)[:, 0]
     multiplier = np.stack([first, 1.0 / first], axis=1)
     time = np.linspace(0.0, cycles, 40 * cycles + 1)
-    motion = np.array([_motion(classical.mathieu(w, depth), time) for w in shown])
+    motion = np.array([_motion(classical.Mathieu(depth).system(w), time) for w in shown])
     both = ("frequency", "number")
     return xr.Dataset(
         {
@@ -141,37 +143,26 @@ def transition_curves(depths: ArrayLike, count: int, harmonics: int = 60) -> xr.
     )
 
 
-def chart(
-    system_at: Callable[[float], PeriodicSystem], frequencies: ArrayLike, depths: ArrayLike, description: str
-) -> xr.Dataset:
-    """Growth rates over depth of modulation and parametric frequency.
+def chart(growth: xr.DataArray, description: str) -> xr.Dataset:
+    """Growth rates over one parameter of a classical equation and its parametric frequency.
 
     Parameters
     ----------
-    system_at : callable
-        Parametric frequency [rad/s] to the system with the load of depth 1.
-    frequencies : array_like, shape (W,)
-        ω [rad/s].
-    depths : array_like, shape (E,)
-        ε [-].
+    growth : xarray.DataArray
+        From :func:`facegear.maps.stability_map.stability_map`, over the parameter and ``speed``, which is here the
+        frequency ω [rad/s].
     description : str
         Parameters of the system, for the provenance.
 
     Returns
     -------
     xarray.Dataset
-        ``growth_rate`` (depth, frequency) [1/s].
+        ``growth_rate`` (parameter, frequency) [1/s].
     """
-    values = finite_array("depths", depths)
-    columns = []
-    for frequency in finite_array("frequencies", frequencies):
-        system = system_at(float(frequency))
-        unit = np.array([load.stiffness for load in system.loads])
-        radii = column_spectral_radii(system, 0.0, 0.0, values[:, None] * unit)
-        columns.append(np.log(radii) / system.period)
+    parameter = str(growth.dims[0])
     return xr.Dataset(
-        {"growth_rate": _growth(("depth", "frequency"), np.array(columns).T, "Growth rate ln max|λ|/T0")},
-        coords={"depth": values, "frequency": np.asarray(frequencies, dtype=float)},
+        {"growth_rate": _growth((parameter, "frequency"), growth.values, "Growth rate ln max|λ|/T0")},
+        coords={parameter: growth[parameter].values, "frequency": growth["speed"].values},
         attrs={"parameters": description},
     )
 
@@ -245,8 +236,10 @@ def damped_charts(frequencies: ArrayLike, depths: ArrayLike, damping_ratios: Seq
 
     Parameters
     ----------
-    frequencies, depths : array_like
-        As in :func:`chart`.
+    frequencies : array_like, shape (W,)
+        ω [rad/s], ω0 = 1, ascending.
+    depths : array_like, shape (E,)
+        ε [-].
     damping_ratios : sequence of float
         ϑ [-].
 
@@ -256,7 +249,7 @@ def damped_charts(frequencies: ArrayLike, depths: ArrayLike, damping_ratios: Seq
         ``growth_rate`` (damping_ratio, depth, frequency) [1/s].
     """
     charts = [
-        chart(lambda w, zeta=zeta: classical.mathieu(w, 1.0, zeta), frequencies, depths, "")  # type: ignore[misc]
+        chart(stability_map(classical.Mathieu(1.0, zeta), frequencies, "depth", depths), "")
         for zeta in damping_ratios
     ]
     joined = xr.concat(charts, dim=xr.Variable("damping_ratio", list(damping_ratios)), combine_attrs="drop")
@@ -271,7 +264,7 @@ def duty_chart(frequencies: ArrayLike, duties: ArrayLike, depth: float) -> xr.Da
     Parameters
     ----------
     frequencies : array_like, shape (W,)
-        ω [rad/s], ω0 = 1.
+        ω [rad/s], ω0 = 1, ascending.
     duties : array_like, shape (D,)
         Part of the period with the higher stiffness [-].
     depth : float
@@ -283,35 +276,30 @@ def duty_chart(frequencies: ArrayLike, duties: ArrayLike, depth: float) -> xr.Da
         ``growth_rate`` (duty, frequency) [1/s].
     """
     speeds = finite_array("frequencies", frequencies)
+    # Along the frequency, for along the duty the jumps move. Two pieces of constant stiffness: one exponential each is
+    # exact.
     rows = [
-        # Two pieces of constant stiffness: one exponential each is exact.
-        np.log(
-            family_spectral_radii(
-                lambda w, duty=duty: classical.meissner(w, depth, duty),  # type: ignore[misc]
-                speeds,
-                floquet.AlignedStepwise(2),
-            )
-        )
-        * speeds
-        / (2.0 * np.pi)
+        family_spectral_radii(classical.Meissner(depth, duty).system, speeds, floquet.AlignedStepwise(2))
         for duty in finite_array("duties", duties)
     ]
     return xr.Dataset(
-        {"growth_rate": _growth(("duty", "frequency"), np.array(rows), "Growth rate ln max|λ|/T0")},
+        {
+            "growth_rate": _growth(
+                ("duty", "frequency"), np.log(rows) * speeds / (2.0 * np.pi), "Growth rate ln max|λ|/T0"
+            )
+        },
         coords={"duty": np.asarray(duties, dtype=float), "frequency": speeds},
         attrs={"parameters": f"Meissner, depth = {depth:.10g}"},
     )
 
 
-def bands(
-    system_at_depth: Callable[[float], PeriodicSystem], depths: Sequence[float], order: int, description: str
-) -> xr.Dataset:
+def bands(model: Model, depths: Sequence[float], order: int, description: str) -> xr.Dataset:
     """Hsu's bands of the parametric frequency against the depth of modulation.
 
     Parameters
     ----------
-    system_at_depth : callable
-        ε to the system; its own period does not matter.
+    model : Model
+        With a parameter ``depth``.
     depths : sequence of float
         ε [-], ascending.
     order : int
@@ -325,9 +313,10 @@ def bands(
         ``lower``, ``upper``, ``centre`` [rad/s] over (band, depth), NaN where damping closes the band; labels like
         "(1+2)/1" in the coordinate ``label``.
     """
+    # Bands do not depend on the frequency at which the system is taken.
+    systems = [replace_parameter(model, "depth", float(depth)).system(2.0) for depth in depths]
     found: list[dict[str, ResonanceBand]] = [
-        {band.label: band for band in resonance_bands(system_at_depth(float(depth)), order=order)}
-        for depth in depths
+        {band.label: band for band in resonance_bands(system, order=order)} for system in systems
     ]
     labels = sorted({label for row in found for label in row}, key=lambda name: _first(found, name).centre)
 
@@ -370,7 +359,7 @@ def hsu_errors(depths: Sequence[float]) -> xr.Dataset:
         Over ``depth``: ``width`` of the first tongue, ``error`` (the larger of its two border errors),
         ``second_width`` of the second tongue, which has no band [rad/s], ω0 = 1.
     """
-    hsu = bands(lambda depth: classical.mathieu(2.0, depth), depths, 6, "")
+    hsu = bands(classical.Mathieu(1.0), depths, 6, "")
     curves = transition_curves(depths, 1)["border"].values[:, 0]
     # Tongue 1 has the period 2 T0, tongue 2 the period T0.
     low, high = np.sort(curves[2:], axis=0)

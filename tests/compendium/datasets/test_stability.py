@@ -7,15 +7,18 @@ import pytest
 
 from compendium.datasets import stability as arrays
 from facegear.floquet import multipliers as floquet
+from facegear.maps.stability_map import stability_map
 from facegear.mechanics import classical
 from tests.figures import check_round_trip
 from tests.independent import classical as independent
 
-GEARS = classical.gear_pair(1.1, 1.563, droop=0.4, shaft_damping=0.02)
+GEARS = classical.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
 
 
-def mathieu_at(frequency):
-    return classical.mathieu(frequency, 1.0)
+def mathieu_chart(frequencies, depths):
+    return arrays.chart(
+        stability_map(classical.Mathieu(1.0), frequencies, "depth", depths, jobs=1), "Mathieu"
+    )
 
 
 @pytest.mark.parametrize(
@@ -24,10 +27,10 @@ def mathieu_at(frequency):
         arrays.swing(0.3, np.linspace(1.4, 2.6, 5), [2.0, 1.5], cycles=2),
         arrays.transition_curves([0.0, 0.3], 2),
         arrays.meissner_borders([0.0, 0.3], 2, (0.3, 3.0)),
-        arrays.chart(mathieu_at, [1.5, 2.0], [0.0, 0.3], "Mathieu"),
+        mathieu_chart([1.5, 2.0], [0.0, 0.3]),
         arrays.damped_charts([1.5, 2.0], [0.0, 0.3], [0.0, 0.02]),
         arrays.duty_chart([1.5, 2.0], [0.3, 0.5], 0.4),
-        arrays.bands(lambda e: classical.mathieu(2.0, e, 0.02), [0.05, 0.2], 3, "Mathieu"),
+        arrays.bands(classical.Mathieu(1.0, 0.02), [0.05, 0.2], 3, "Mathieu"),
         arrays.hsu_errors([0.05, 0.1]),
     ],
     ids=lambda dataset: next(iter(dataset.data_vars)),
@@ -52,7 +55,7 @@ def test_transition_curves_carry_the_trace_of_their_period(family):
     curves = arrays.transition_curves([0.4], 2)
     for number in (1, 2):
         frequency = float(curves.border[family, number - 1, 0])
-        trace = np.trace(floquet.transition_matrix(classical.mathieu(frequency, 0.4)))
+        trace = np.trace(floquet.transition_matrix(classical.Mathieu(0.4).system(frequency)))
         assert trace == pytest.approx(2.0 if family < 2 else -2.0, abs=1e-9)
 
 
@@ -71,7 +74,7 @@ def test_meissner_borders_agree_with_shooting(family):
 
 
 def test_chart_cells_are_growth_rates_of_single_systems():
-    data = arrays.chart(mathieu_at, [1.0, 2.0], [0.2, 0.6], "Mathieu")
+    data = mathieu_chart([1.0, 2.0], [0.2, 0.6])
     for depth in (0.2, 0.6):
         rate = independent.growth_rate(independent.mathieu(2.0, depth))
         assert float(data.growth_rate.sel(depth=depth, frequency=2.0)) == pytest.approx(rate, abs=1e-9)
@@ -79,7 +82,7 @@ def test_chart_cells_are_growth_rates_of_single_systems():
 
 def test_damping_ratio_zero_is_the_undamped_chart():
     damped = arrays.damped_charts([1.0, 2.0], [0.2, 0.6], [0.0, 0.05])
-    plain = arrays.chart(mathieu_at, [1.0, 2.0], [0.2, 0.6], "Mathieu")
+    plain = mathieu_chart([1.0, 2.0], [0.2, 0.6])
     np.testing.assert_allclose(damped.growth_rate.values[0], plain.growth_rate.values, rtol=1e-12, atol=1e-12)
     assert (damped.growth_rate.values[1] < damped.growth_rate.values[0]).all()
 
@@ -93,7 +96,7 @@ def test_duty_chart_follows_the_closed_form():
 
 
 def test_bands_open_at_the_threshold_of_damping():
-    data = arrays.bands(lambda e: classical.mathieu(2.0, e, 0.02), [0.07, 0.09, 0.3], 3, "Mathieu")
+    data = arrays.bands(classical.Mathieu(1.0, 0.02), [0.07, 0.09, 0.3], 3, "Mathieu")
     assert data["label"].values.tolist() == ["(1+1)/1"]
     # ε = 4ϑ = 0.08.
     assert np.isnan(data.lower.values[0]).tolist() == [True, False, False]
@@ -104,7 +107,7 @@ def test_bands_open_at_the_threshold_of_damping():
 @pytest.mark.parametrize("kind", ["sum", "difference"])
 def test_bands_of_the_coupled_pair_follow_the_formula(kind):
     how = {"coupling": 0.8} if kind == "sum" else {"circulation": 0.8}
-    data = arrays.bands(lambda e: classical.coupled_pair(2.0, e, damping=0.02, **how), [0.4], 1, "pair")
+    data = arrays.bands(classical.CoupledPair(1.0, damping=0.02, **how), [0.4], 1, "pair")
     label = {"sum": "(1+2)/1", "difference": "(2-1)/1"}[kind]
     band = data["label"].values.tolist().index(label)
     expected = independent.hsu_pair(0.4, how.get("coupling", 0.0), how.get("circulation", 0.0), 0.02)
