@@ -20,7 +20,7 @@ A map over speed and the stiffness of the pinion's bearing, and all intervals of
 >>> chart = fg.stability_map(model, speeds, "stiffness", stiffnesses, jobs=1)
 >>> chart.sizes["stiffness"], chart.sizes["speed"]
 (2, 5)
->>> for tongue in fg.tongues(model, *fg.rad_per_s(np.array([500.0, 600.0]))):
+>>> for tongue in fg.tongues(model, fg.rad_per_s(np.array([500.0, 600.0]))):
 ...     print(f"{tongue.label}: {fg.rpm(tongue.lower):.1f} to {fg.rpm(tongue.upper):.1f} rpm")
 (1+8)/1: 518.6 to 549.5 rpm
 (1+9)/1: 561.5 to 592.6 rpm

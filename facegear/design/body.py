@@ -22,7 +22,7 @@ from facegear.support.parameters import MeshLoad, ascending, keep, positive, wit
 def critical_thickness(
     drive: Drive,
     load: MeshLoad,
-    speed_range: tuple[float, float],
+    speeds: tuple[float, float],
     *,
     thickness_range: tuple[float, float] = (0.025, 0.06),
     contact_ratio: float | None = None,
@@ -36,7 +36,7 @@ def critical_thickness(
     drive : Drive
     load : MeshLoad
         μ, ζ, τ.
-    speed_range : tuple of float
+    speeds : tuple of float
         Operating speeds of the face gear, lowest and highest [rad/s]. The time it takes is nearly in inverse
         proportion to the lowest.
     thickness_range : tuple of float
@@ -56,7 +56,7 @@ def critical_thickness(
     TypeError, ValueError
         As :func:`facegear.maps.lobes.highest_lobes`, or as :class:`Transverse` for what makes up the model.
     """
-    lowest, highest = ascending("speed_range", speed_range, "rad/s")
+    lowest, highest = ascending("speeds", speeds, "rad/s")
     body = Body(
         drive,
         within("thickness_range", thickness_range[1], *THICKNESS_RATIO_RANGE),
@@ -89,7 +89,7 @@ class Requirements:
         Ω1 at that power [rad/s].
     safety_factor : float
         SF of (4-22), 1 or greater.
-    speed_range : tuple of float
+    speeds : tuple of float
         Operating speeds of the face gear, lowest and highest [rad/s].
 
     Raises
@@ -101,7 +101,7 @@ class Requirements:
     power: float
     pinion_speed: float
     safety_factor: float
-    speed_range: tuple[float, float]
+    speeds: tuple[float, float]
 
     def __post_init__(self) -> None:
         keep(
@@ -109,7 +109,7 @@ class Requirements:
             power=positive("power", self.power, "W"),
             pinion_speed=positive("pinion_speed", self.pinion_speed, "rad/s"),
             safety_factor=within("safety_factor", self.safety_factor, 1.0, 100.0),
-            speed_range=ascending("speed_range", self.speed_range, "rad/s"),
+            speeds=ascending("speeds", self.speeds, "rad/s"),
         )
 
     def root_stresses(self, body: Body) -> tuple[float, float]:
@@ -162,7 +162,7 @@ def design_body(
     BodyDesign
         Also where the stress is too high: a family of designs shows both.
     """
-    critical = critical_thickness(drive, load, requirements.speed_range, thickness_range=thickness_range)
+    critical = critical_thickness(drive, load, requirements.speeds, thickness_range=thickness_range)
     return _design(drive, critical, requirements)
 
 
@@ -212,5 +212,5 @@ def _designs(
 ) -> tuple[BodyDesign, ...]:
     """Designs of one drive."""
     model = Transverse(Body(drive, thickness_range[1]), load)
-    found = highest_lobes(_thickness_of(model), requirements.speed_range[0], highest_speeds, thickness_range)
+    found = highest_lobes(_thickness_of(model), requirements.speeds[0], highest_speeds, thickness_range)
     return tuple(_design(drive, critical, requirements) for critical in found)

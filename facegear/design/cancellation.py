@@ -240,7 +240,7 @@ def tongue_of(model: Transverse, pair: WavePair, below: float, above: float) -> 
         centre * (1 - within("below", below, 0.0, 0.5)),
         centre * (1 + within("above", above, 0.0, 0.5)),
     )
-    found = tongues(model, low, high, threshold=1e-10)
+    found = tongues(model, (low, high), threshold=1e-10)
     own = [t for t in found if (t.combination.kind, t.combination.order) == (pair.kind, pair.order)]
     return max(own, key=lambda tongue: tongue.growth_rate, default=None)
 

@@ -108,7 +108,7 @@ def _moved(model: Any, change: float, path: tuple[str, ...], number: int, step: 
 def effects_of_changes(
     model: Model,
     found: Sequence[Tongue],
-    speed_range: tuple[float, float],
+    speeds: tuple[float, float],
     parameters: str,
     *,
     followed: int = 3,
@@ -123,7 +123,7 @@ def effects_of_changes(
     model : Model
     found : sequence of Tongue
         Its tongues.
-    speed_range : tuple of float
+    speeds : tuple of float
         Lowest and highest speed that they were looked for in [rad/s]. Borders there do not move.
     parameters : str
         For the provenance.
@@ -140,12 +140,12 @@ def effects_of_changes(
     """
     followed = integer_at_least("followed", followed, 0)
     changes = possible_changes(model) if found else ()
-    slopes = [_slopes(model, change, found, speed_range) for change in changes]
+    slopes = [_slopes(model, change, found, speeds) for change in changes]
     # Where all speeds are unstable no width changes: growth decides.
     order = sorted(range(len(changes)), key=lambda i: (-abs(slopes[i][0]), -abs(slopes[i][1])))
     after = np.full((len(order), 2), np.nan)
     for place, i in enumerate(order[:followed]):
-        after[place] = _after(model, changes[i], slopes[i][0] or slopes[i][1], speed_range)
+        after[place] = _after(model, changes[i], slopes[i][0] or slopes[i][1], speeds)
     table = np.reshape([slopes[i] for i in order], (len(order), 2)) / 100
     return xr.Dataset(
         {
@@ -181,7 +181,7 @@ def effects_of_changes(
 
 
 def _slopes(
-    model: Any, change: Change, found: Sequence[Tongue], speed_range: tuple[float, float]
+    model: Any, change: Change, found: Sequence[Tongue], speeds: tuple[float, float]
 ) -> tuple[float, float]:
     """Differentiate the unstable width [rad/s] and the largest growth rate [1/s] by the relative change."""
     more, less = change.apply(model, _STEP), change.apply(model, -_STEP)
@@ -198,17 +198,17 @@ def _slopes(
     width = 0.0
     for tongue in found:
         for border, sign in ((tongue.lower, -1), (tongue.upper, 1)):
-            if border not in speed_range:
+            if border not in speeds:
                 width -= sign * by_change(border) / by_speed(border)
     strongest = max(found, key=lambda tongue: tongue.growth_rate)
     return width, by_change(strongest.peak)
 
 
-def _after(model: Any, change: Change, slope: float, speed_range: tuple[float, float]) -> tuple[float, float]:
+def _after(model: Any, change: Change, slope: float, speeds: tuple[float, float]) -> tuple[float, float]:
     """Unstable width [rad/s] and largest growth rate [1/s] after a change in the better direction."""
     try:
         changed = change.apply(model, -math.copysign(FOLLOWED, slope))
     except ValueError:  # out of the range that the model is valid in
         return math.nan, math.nan
-    found = tongues(changed, *speed_range)
+    found = tongues(changed, speeds)
     return unstable_width(found), max((tongue.growth_rate for tongue in found), default=0.0)

@@ -18,6 +18,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from facegear.floquet.models import replace_parameter
@@ -29,7 +30,7 @@ from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import nonnegative, positive, within
+from facegear.support.parameters import ascending, nonnegative, within
 from facegear.support.types import FloatArray
 
 # Powers, over the critical one of the disk alone, at which a disk is tried.
@@ -188,9 +189,7 @@ class PowerLimit:
     label: str
 
 
-def largest_power(
-    model: Transverse, lowest_speed: float, highest_speed: float, *, tolerance: float = 1e-3
-) -> PowerLimit:
+def largest_power(model: Transverse, speeds: ArrayLike, *, tolerance: float = 1e-3) -> PowerLimit:
     """Largest power below which a drive is stable at all speeds of a range.
 
     All tongues are looked for at powers that rise to 3 times the critical power of the disk alone, until there are
@@ -202,7 +201,7 @@ def largest_power(
     ----------
     model : Transverse
         With a driving force, whose own power does not matter.
-    lowest_speed, highest_speed : float
+    speeds : (low, high)
         Range of Ω2 [rad/s].
     tolerance : float
         Relative accuracy of the power, 1e-6 to 0.1.
@@ -222,16 +221,13 @@ def largest_power(
     if model.force is None:
         raise ValueError("force of the model must be a DrivingForce, got None")
     tolerance = within("tolerance", tolerance, 1e-6, 0.1)
-    low, high = (
-        positive("lowest_speed", lowest_speed, "rad/s"),
-        positive("highest_speed", highest_speed, "rad/s"),
-    )
+    low, high = ascending("speeds", speeds, "rad/s")
     unit = float(mode_critical_powers(model.body, model.force.pinion_speed).min())
 
     def at(power: float) -> Transverse:
         return replace_parameter(model, "force.power", power)
 
-    if found := tongues(at(0.0), low, high):
+    if found := tongues(at(0.0), (low, high)):
         worst = max(found, key=lambda tongue: tongue.growth_rate)
         return PowerLimit(0.0, worst.peak, worst.label)
     if unit == math.inf:
@@ -239,14 +235,14 @@ def largest_power(
     stable, level = 0.0, 0.0
     for share in _LEVELS:
         stable, level = level, share * unit
-        if found := tongues(at(level), low, high):
+        if found := tongues(at(level), (low, high)):
             break
     lowest = PowerLimit(math.inf, math.nan, "")
     while found:
         strongest = max(found, key=lambda tongue: tongue.growth_rate)
         lowest = _tip(at, stable, level, strongest, (low, high), tolerance / 2)
         level = lowest.power * (1 - tolerance)
-        found = tongues(at(level), low, high)
+        found = tongues(at(level), (low, high))
     return lowest
 
 
@@ -255,7 +251,7 @@ def _tip(
     stable: float,
     unstable: float,
     tongue: Tongue,
-    speed_range: tuple[float, float],
+    speeds: tuple[float, float],
     tolerance: float,
 ) -> PowerLimit:
     """Follow a tongue down to its tip: in turn the power at which its speed is stable, and the worst speed there."""
@@ -269,7 +265,7 @@ def _tip(
         power, _ = critical_value(here, stable, above, rtol=tolerance / 4)
         if power > above * (1 - tolerance):
             return PowerLimit(power, speed, tongue.label)
-        speed, value = growth_peak(at(power), speed, speed_range, **_WINDOWS)
+        speed, value = growth_peak(at(power), speed, speeds, **_WINDOWS)
         if here(stable)[1] >= 0.0 or value <= 0.0:
             return PowerLimit(power, speed, tongue.label)
     raise ArithmeticError(f"the tip of tongue {tongue.label} was not found in {_MOST_TURNS} turns")

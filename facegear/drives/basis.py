@@ -60,15 +60,13 @@ def with_basis(model: Transverse, nodal_circles: int, nodal_diameters: int) -> T
     return replace(model, body=body, load=load, force=force)
 
 
-def unstable_share(found: Sequence[Tongue], speed_range: tuple[float, float]) -> float:
+def unstable_share(found: Sequence[Tongue], speeds: tuple[float, float]) -> float:
     """Part of a range of speed that tongues cover, 0 to 1."""
-    low, high = speed_range
+    low, high = speeds
     return sum(tongue.width for tongue in found) / (high - low)
 
 
-def disagreement(
-    first: Sequence[Tongue], second: Sequence[Tongue], speed_range: tuple[float, float]
-) -> float:
+def disagreement(first: Sequence[Tongue], second: Sequence[Tongue], speeds: tuple[float, float]) -> float:
     """Part of a range of speed in which only one of two sets of tongues is unstable, 0 to 1.
 
     No border has moved by more than this part of the range.
@@ -77,10 +75,10 @@ def disagreement(
     ----------
     first, second : sequence of Tongue
         Both from the whole range.
-    speed_range : tuple of float
+    speeds : tuple of float
         Lowest and highest speed [rad/s].
     """
-    low, high = speed_range
+    low, high = speeds
     both = sum(
         max(0.0, min(one.upper, other.upper) - max(one.lower, other.lower))
         for one in first
@@ -88,7 +86,7 @@ def disagreement(
     )
     return max(
         0.0,
-        unstable_share(first, speed_range) + unstable_share(second, speed_range) - 2 * both / (high - low),
+        unstable_share(first, speeds) + unstable_share(second, speeds) - 2 * both / (high - low),
     )
 
 
@@ -119,7 +117,7 @@ class SettledTongues:
     ----------
     model : Transverse
         The drive in that basis.
-    speed_range : tuple of float
+    speeds : tuple of float
         Lowest and highest speed [rad/s].
     steps : tuple of BasisStep
         All bases, ascending.
@@ -128,7 +126,7 @@ class SettledTongues:
     """
 
     model: Transverse
-    speed_range: tuple[float, float]
+    speeds: tuple[float, float]
     steps: tuple[BasisStep, ...]
     settled: bool
 
@@ -140,11 +138,11 @@ class SettledTongues:
     @property
     def unstable_share(self) -> float:
         """Part of the range of speed that is unstable, 0 to 1."""
-        return unstable_share(self.tongues, self.speed_range)
+        return unstable_share(self.tongues, self.speeds)
 
 
 def settled_tongues(
-    model: Transverse, speed_range: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
+    model: Transverse, speeds: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
 ) -> SettledTongues:
     """Tongues of a drive in a basis that is raised until they stand still.
 
@@ -155,7 +153,7 @@ def settled_tongues(
     ----------
     model : Transverse
         Drive in the first basis.
-    speed_range : tuple of float
+    speeds : tuple of float
         Lowest and highest speed [rad/s].
     tolerance : float
         Part of the range of speed in which two bases in succession may disagree, 1e-6 to 0.5. They must also agree
@@ -179,12 +177,12 @@ def settled_tongues(
     shown = model
     for circles, diameters in _bases(model.body, most_steps):
         shown = with_basis(model, circles, diameters) if steps else model
-        found = tongues(shown, *speed_range)
-        moved = disagreement(steps[-1].tongues, found, speed_range) if steps else math.nan
+        found = tongues(shown, speeds)
+        moved = disagreement(steps[-1].tongues, found, speeds) if steps else math.nan
         steps.append(BasisStep(circles, diameters, found, moved))
         if moved <= tolerance and bool(found) == bool(steps[-2].tongues):
-            return SettledTongues(shown, speed_range, tuple(steps), settled=True)
-    return SettledTongues(shown, speed_range, tuple(steps), settled=False)
+            return SettledTongues(shown, speeds, tuple(steps), settled=True)
+    return SettledTongues(shown, speeds, tuple(steps), settled=False)
 
 
 def _bases(body: Body, most: int) -> list[tuple[int, int]]:

@@ -129,7 +129,7 @@ def _tongue_at(model: Model, speed: float) -> tuple[Tongue | None, tuple[float, 
     for factor in _WINDOWS:
         window = (speed / factor, speed * factor)
         try:
-            found = tongues(model, *window, threshold=UNSTABLE, hints=(speed,))
+            found = tongues(model, window, threshold=UNSTABLE, hints=(speed,))
         except ArithmeticError:
             # Multipliers too large to be known to the threshold: no borders, but the cell still has its label.
             return None, window

@@ -136,7 +136,7 @@ def flutter(body_model: Transverse, duty: Requirements) -> tuple[Row, ...]:
                 angles=angles,
                 highest_power=duty.power,
             )
-            for speed in duty.speed_range
+            for speed in duty.speeds
         )
 
     follower, dead = (smallest("follower"), smallest("dead")) if damped else (0.0, 0.0)
@@ -193,14 +193,14 @@ def tongue_table(found: Sequence[Tongue], parameters: str) -> xr.Dataset:
     )
 
 
-def safe_windows(table: xr.Dataset, speed_range: tuple[float, float]) -> xr.Dataset:
+def safe_windows(table: xr.Dataset, speeds: tuple[float, float]) -> xr.Dataset:
     """Intervals of speed between the tongues.
 
     Parameters
     ----------
     table : xarray.Dataset
         From :func:`tongue_table`.
-    speed_range : tuple of float
+    speeds : tuple of float
         Lowest and highest speed that the tongues were looked for in [rad/s].
 
     Returns
@@ -208,7 +208,7 @@ def safe_windows(table: xr.Dataset, speed_range: tuple[float, float]) -> xr.Data
     xarray.Dataset
         Over ``window``, ascending: ``lower``, ``upper`` [rpm].
     """
-    low, high = rpm(speed_range[0]), rpm(speed_range[1])
+    low, high = rpm(speeds[0]), rpm(speeds[1])
     starts = np.concatenate([[low], table["upper"].values])
     stops = np.concatenate([table["lower"].values, [high]])
     wide = stops - starts > 1e-9 * high
@@ -329,7 +329,7 @@ class ThicknessVerdict(NamedTuple):
 
 
 def critical_thickness(
-    model: Transverse, speed_range: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
+    model: Transverse, speeds: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
 ) -> ThicknessVerdict:
     """Thickness ratio above which the body is stable in its whole speed range.
 
@@ -339,7 +339,7 @@ def critical_thickness(
     ----------
     model : Transverse
         With the driving force and in the basis of the report.
-    speed_range : tuple of float
+    speeds : tuple of float
         Lowest and highest speed [rad/s].
     widest : float
         It is looked for between 1/`widest` and `widest` times the model's thickness.
@@ -357,7 +357,7 @@ def critical_thickness(
     def model_at(thickness_ratio: float) -> Transverse:
         return replace(model, body=replace(model.body, thickness_ratio=thickness_ratio))
 
-    low, high = speed_range
+    low, high = speeds
     try:
         (critical,) = highest_lobes(model_at, low, [high], searched, tolerance)
     except UnstableTopError as error:
@@ -371,10 +371,10 @@ def critical_thickness(
 
 
 def critical_thicknesses(
-    models: Sequence[Transverse], speed_range: tuple[float, float], *, jobs: int = -1
+    models: Sequence[Transverse], speeds: tuple[float, float], *, jobs: int = -1
 ) -> tuple[ThicknessVerdict, ...]:
     """Critical thickness of several models, in processes, in their order."""
-    return tuple(in_processes(critical_thickness, [(model, speed_range) for model in models], jobs))
+    return tuple(in_processes(critical_thickness, [(model, speeds) for model in models], jobs))
 
 
 # --- bases ------------------------------------------------------------------------------------------------------
@@ -404,7 +404,7 @@ def basis_table(computed: Sequence[Case], parameters: str) -> xr.Dataset:
                 "basis", [s.nodal_diameters for _, s in rows], "Nodal diameters N", "1"
             ),
             "unstable_share": share(
-                [unstable_share(s.tongues, case.found.speed_range) for case, s in rows],
+                [unstable_share(s.tongues, case.found.speeds) for case, s in rows],
                 "Unstable part of the speeds",
             ),
             "moved": share(

@@ -103,7 +103,7 @@ def cases(
     """
     settings = [(clock, ratio, force) for clock, ratio in clocks(file).items() for force in _FORCES]
     models = [driven(file, force, ratio) for _, ratio, force in settings]
-    work = [(model, file.requirements.speed_range, tolerance, most_steps) for model in models]
+    work = [(model, file.requirements.speeds, tolerance, most_steps) for model in models]
     found = in_processes(_settled, work, jobs)
     return tuple(
         Case(clock, force, *result) for (clock, _, force), result in zip(settings, found, strict=True)
@@ -111,10 +111,10 @@ def cases(
 
 
 def _settled(
-    model: Transverse, speed_range: tuple[float, float], tolerance: float, most_steps: int
+    model: Transverse, speeds: tuple[float, float], tolerance: float, most_steps: int
 ) -> tuple[SettledTongues, float]:
-    found = settled_tongues(model, speed_range, tolerance=tolerance, most_steps=most_steps)
-    growth = [mean_growth_rate(found.model.system(v)) for v in np.linspace(*speed_range, _SPEEDS).tolist()]
+    found = settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps)
+    growth = [mean_growth_rate(found.model.system(v)) for v in np.linspace(*speeds, _SPEEDS).tolist()]
     return found, float(np.mean(np.array(growth) > 0.0))
 
 
@@ -155,7 +155,7 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     -------
     Verdict
     """
-    low, high = (f"{rpm(speed):.4g}" for speed in file.requirements.speed_range)
+    low, high = (f"{rpm(speed):.4g}" for speed in file.requirements.speeds)
     duty = file.requirements
     where = (
         f"from {low} to {high} rpm under the driving force of {1e-3 * duty.power:.4g} kW a pinion at "
@@ -188,7 +188,7 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
         headline += f" The teeth are not strong enough: {strength}."
     findings = [_finding(case) for case in computed]
     if torsional is not None:
-        spoken = _speeds(torsional, file.requirements.speed_range)
+        spoken = _speeds(torsional, file.requirements.speeds)
         findings.append(f"Torsion: {spoken}{_resonances(torsional)}.")
     findings.append(f"Strength: {strength}.")
     return Verdict(headline, tuple(findings), _left_out(file))
@@ -214,7 +214,7 @@ def _finding(case: Case) -> str:
         sure = f"{basis}; the basis before differs at {100 * last.moved:.2g} % of the speeds"
     if not found.settled:
         sure += ", NOT SETTLED"
-    spoken = _speeds(found.tongues, found.speed_range)
+    spoken = _speeds(found.tongues, found.speeds)
     if case.flutter_share > 0.0:
         cause = (
             f"; at {100 * case.flutter_share:.3g} % of {_SPEEDS} speeds looked at the driving force alone makes the "
@@ -225,7 +225,7 @@ def _finding(case: Case) -> str:
     return f"{case.name[0].upper()}{case.name[1:]}: {spoken}{cause} ({sure})."
 
 
-def _speeds(found: Sequence[Tongue], speed_range: tuple[float, float]) -> str:
+def _speeds(found: Sequence[Tongue], speeds: tuple[float, float]) -> str:
     if not found:
         return "stable at all speeds"
     widest = sorted(sorted(found, key=lambda tongue: -tongue.width)[:_NAMED], key=lambda tongue: tongue.lower)
@@ -233,7 +233,7 @@ def _speeds(found: Sequence[Tongue], speed_range: tuple[float, float]) -> str:
     rest = len(found) - len(widest)
     others = f" and {rest} narrower {'interval' if rest == 1 else 'intervals'}" if rest else ""
     growth = max(tongue.growth_rate for tongue in found)
-    share = 100 * unstable_share(found, speed_range)
+    share = 100 * unstable_share(found, speeds)
     return f"unstable at {share:.3g} % of the speeds ({named} rpm{others}; growth up to {growth:.3g} 1/s)"
 
 

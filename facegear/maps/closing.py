@@ -18,7 +18,7 @@ from facegear.floquet.models import Model, parameter_path, replace_parameter
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.multipliers import Method
 from facegear.maps.peaks import Peak, critical_value, largest_between
-from facegear.support.parameters import finite_array, positive
+from facegear.support.parameters import ascending, finite_array
 from facegear.support.types import FloatArray
 
 # Speeds at which the growth is looked at before its largest values are refined.
@@ -80,15 +80,13 @@ class GrowthPeaks:
     closing_values: tuple[ClosingValue, ...]
 
 
-def largest_growth(
-    model: Model, lowest_speed: float, highest_speed: float, method: Method | None = None
-) -> tuple[float, float]:
+def largest_growth(model: Model, speeds: ArrayLike, method: Method | None = None) -> tuple[float, float]:
     """Find the largest growth rate of a model in a range of speed, whether it is positive or not.
 
     Parameters
     ----------
     model : Model
-    lowest_speed, highest_speed : float
+    speeds : (low, high)
         Range looked at [rad/s], both ends included. A peak narrower than its five hundredth part may be missed.
     method : Method, optional
         As for :func:`facegear.maps.tracing.tongues`.
@@ -105,13 +103,13 @@ def largest_growth(
     ArithmeticError
         If transition matrices do not vary smoothly with speed.
     """
-    low, high = _range(lowest_speed, highest_speed)
+    low, high = ascending("speeds", speeds, "rad/s")
     curve = MultiplierCurve.of(model, low, high, method)
     # The growth in a period over the period, which is in inverse proportion to speed.
     per_second = 1.0 / (model.system(low).period * low)
 
-    def growth(speeds: FloatArray) -> FloatArray:
-        return np.asarray(np.log(curve.spectral_radii(speeds)) * speeds * per_second, dtype=float)
+    def growth(at: FloatArray) -> FloatArray:
+        return np.asarray(np.log(curve.spectral_radii(at)) * at * per_second, dtype=float)
 
     grid = np.linspace(low, high, _SPEEDS)
     sampled = growth(grid)
@@ -134,8 +132,7 @@ def growth_peaks(
     model: Model,
     parameter: str,
     values: ArrayLike,
-    lowest_speed: float,
-    highest_speed: float,
+    speeds: ArrayLike,
     *,
     method: Method | None = None,
 ) -> GrowthPeaks:
@@ -150,7 +147,7 @@ def growth_peaks(
     values : array_like, shape (V,)
         Values of the parameter, ascending, at least three. Between them a zero is found where the sign changes, and
         where a parabola through three of them comes near enough to zero to touch it.
-    lowest_speed, highest_speed : float
+    speeds : (low, high)
         Range of speed [rad/s] that holds the tongue wherever the parameter takes it, and no other one.
     method : Method, optional
         As for :func:`facegear.maps.tracing.tongues`.
@@ -166,17 +163,17 @@ def growth_peaks(
     ArithmeticError
         If a tongue leaves the range of speed while it closes, or as :func:`largest_growth`.
     """
-    low, high = _range(lowest_speed, highest_speed)
+    low, high = ascending("speeds", speeds, "rad/s")
     axis = finite_array("values", values)
     if axis.ndim != 1 or axis.size < 3 or (np.diff(axis) <= 0.0).any():
         raise ValueError(f"values must be at least three, ascending; got {values!r}")
     parameter_path(model, parameter)
 
     def peak(value: float) -> tuple[float, float]:
-        return largest_growth(replace_parameter(model, parameter, value), low, high, method)
+        return largest_growth(replace_parameter(model, parameter, value), (low, high), method)
 
     sampled = [peak(value) for value in axis.tolist()]
-    speeds, growth = (np.array(part) for part in zip(*sampled, strict=True))
+    places, growth = (np.array(part) for part in zip(*sampled, strict=True))
     closing = []
     for value, speed in _zeros(peak, axis, growth):
         if min(speed - low, high - speed) < _EDGE * (high - low):
@@ -192,17 +189,7 @@ def growth_peaks(
         again = number > 0 and np.searchsorted(axis, closing[number - 1][0]) == np.searchsorted(axis, value)
         system = replace_parameter(model, parameter, value).system(speed)
         named.append(ClosingValue(value, speed, bool((below > 0.0) != again), combination(system, method)))
-    return GrowthPeaks(axis, speeds, growth, tuple(named))
-
-
-def _range(lowest_speed: float, highest_speed: float) -> tuple[float, float]:
-    low = positive("lowest_speed", lowest_speed, "rad/s")
-    high = positive("highest_speed", highest_speed, "rad/s")
-    if low >= high:
-        raise ValueError(
-            f"highest_speed must be greater than lowest_speed, {low:.6g} rad/s; got {highest_speed!r} rad/s"
-        )
-    return low, high
+    return GrowthPeaks(axis, places, growth, tuple(named))
 
 
 def _below(peak: Peak, sign: float, value: float) -> float:

@@ -60,10 +60,10 @@ class StableRangeError(ValueError):
         Lowest h/a that was tried.
     """
 
-    def __init__(self, thickness_ratio: float, speed_range: tuple[float, float]) -> None:
+    def __init__(self, thickness_ratio: float, speeds: tuple[float, float]) -> None:
         super().__init__(
             f"thickness_range must reach down to an unstable lobe: down to h/a = {thickness_ratio:.6g} the model is "
-            f"stable from {speed_range[0]:.6g} to {speed_range[1]:.6g} rad/s"
+            f"stable from {speeds[0]:.6g} to {speeds[1]:.6g} rad/s"
         )
         self.thickness_ratio = thickness_ratio
 
@@ -153,7 +153,7 @@ def highest_lobes(
     if wanted.ndim != 1 or wanted.size == 0:
         raise ValueError(f"highest_speeds must list at least one speed in rad/s, got {highest_speeds!r}")
     for highest in wanted.tolist():
-        lowest_speed, _ = ascending("speed_range", (lowest_speed, highest), "rad/s")
+        lowest_speed, _ = ascending("speeds", (lowest_speed, highest), "rad/s")
     thinnest, thickest = ascending("thickness_range", thickness_range)
     tolerance = within("tolerance", tolerance, 1e-7, 1e-3)
     traced: list[Lobe] = []
@@ -178,17 +178,17 @@ class _Search:
     """Model, and where its lobes are looked for."""
 
     model_at: Callable[[float], Model]
-    speed_range: tuple[float, float]
+    speeds: tuple[float, float]
     thickness_range: tuple[float, float]
     tolerance: float
 
     @property
     def fast_range(self) -> tuple[float, float]:
-        lowest, highest = self.speed_range
+        lowest, highest = self.speeds
         return max(lowest, _FAST_PART * highest), highest
 
-    def tongues_at(self, thickness_ratio: float, speed_range: tuple[float, float]) -> tuple[Tongue, ...]:
-        return tongues(self.model_at(thickness_ratio), *speed_range)
+    def tongues_at(self, thickness_ratio: float, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
+        return tongues(self.model_at(thickness_ratio), speeds)
 
     def refuse_unstable_top(self) -> None:
         thickest = self.thickness_range[1]
@@ -202,19 +202,19 @@ class _Search:
         found: tuple[Tongue, ...] = ()
         if lobes:
             level = max(lobe.thickness_ratio for lobe in lobes) + self.tolerance
-            found = self.tongues_at(level, self.speed_range)
+            found = self.tongues_at(level, self.speeds)
         else:
             while not found and level > thinnest:
                 level = max(_LEVEL * level, thinnest)
                 found = self.tongues_at(level, self.fast_range)
             # Without any in the fast part, slow lobes may still reach the bottom of the range.
-            found = found or self.tongues_at(level, self.speed_range)
+            found = found or self.tongues_at(level, self.speeds)
         while found:
             lobes += [self.tip(level, tongue) for tongue in found]
             level = max(lobe.thickness_ratio for lobe in lobes) + self.tolerance
-            found = self.tongues_at(level, self.speed_range)
+            found = self.tongues_at(level, self.speeds)
         if not lobes:
-            lowest, highest = self.speed_range
+            lowest, highest = self.speeds
             raise StableRangeError(thinnest, (lowest, highest))
         return tuple(sorted(lobes, key=lambda lobe: -lobe.thickness_ratio))
 
@@ -254,7 +254,7 @@ class _Search:
             # Natural frequencies are nearly in proportion to thickness, until two points tell more.
             exponent = math.log(y1 / y0) / math.log(x1 / x0) if x1 != x0 else 1.0
             guess = y1 * (thickness_ratio / x1) ** min(max(exponent, 0.0), 2.0)
-            speed, value = growth_peak(self.model_at(thickness_ratio), guess, self.speed_range, **_WINDOWS)
+            speed, value = growth_peak(self.model_at(thickness_ratio), guess, self.speeds, **_WINDOWS)
             points.append((thickness_ratio, speed))
             return speed, value
 

@@ -75,7 +75,7 @@ def largest_between(
 def growth_peak(
     model: Model,
     guess: float,
-    speed_range: tuple[float, float],
+    speeds: tuple[float, float],
     *,
     window: float,
     widest: float,
@@ -90,7 +90,7 @@ def growth_peak(
     model : Model
     guess : float
         [rad/s]
-    speed_range : tuple of float
+    speeds : tuple of float
         Lowest and highest speed [rad/s]. The growth at an end may be the largest.
     window, widest : float
         Half width of the first window, in parts of its middle; it doubles with each further one up to the widest.
@@ -111,7 +111,7 @@ def growth_peak(
     def growth(speed: float) -> float:
         return growth_rate(model.system(speed))
 
-    lowest, highest = speed_range
+    lowest, highest = speeds
     centre, width = min(max(guess, lowest), highest), window
     for _ in range(_MOST_WINDOWS):
         low, high = max(centre * (1 - width), lowest), min(centre * (1 + width), highest)
@@ -121,7 +121,7 @@ def growth_peak(
         if not ends:
             return best, value
         (end,) = ends
-        if end in speed_range:
+        if end in speeds:
             at_end = growth(end)
             return (end, at_end) if at_end >= value else (best, value)
         centre, width = best, min(2 * width, widest)

@@ -23,7 +23,7 @@ from facegear.floquet.periodic import PeriodicSystem, rigid_motions
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
-from facegear.support.parameters import ascending, finite_array, positive, within
+from facegear.support.parameters import ascending, finite_array, within
 from facegear.support.types import FloatArray
 
 _KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -82,8 +82,7 @@ class TongueSection:
 
 def tongues(
     model: Model,
-    lowest_speed: float,
-    highest_speed: float,
+    speeds: ArrayLike,
     *,
     method: Method | None = None,
     threshold: float = 1e-8,
@@ -96,8 +95,8 @@ def tongues(
     ----------
     model : Model
         Anything with a method ``system(speed)``.
-    lowest_speed, highest_speed : float
-        Range looked at [rad/s].
+    speeds : (low, high)
+        Range looked at [rad/s], as any two numbers.
     method : Method, optional
         Method of :mod:`facegear.floquet.multipliers`; see :func:`facegear.floquet.multipliers.with_method` if left out.
     threshold : float
@@ -122,23 +121,18 @@ def tongues(
     ArithmeticError
         If transition matrices do not vary smoothly with speed, or are not known well enough for the threshold.
     """
-    lowest_speed = positive("lowest_speed", lowest_speed, "rad/s")
-    highest_speed = positive("highest_speed", highest_speed, "rad/s")
-    if lowest_speed >= highest_speed:
-        raise ValueError(
-            f"highest_speed must be greater than lowest_speed, {lowest_speed:.6g} rad/s; got {highest_speed!r} rad/s"
-        )
+    low, high = ascending("speeds", speeds, "rad/s")
     threshold = within("threshold", threshold, 1e-12, 1e-2)
     hints = finite_array("hints", hints).tolist() if len(hints) else []
     if threshold < _DRIFT:
-        _refuse_rigid_motion(model.system(highest_speed))
+        _refuse_rigid_motion(model.system(high))
     from tqdm.auto import tqdm
 
     # tqdm itself takes a notebook for a terminal.
     shown = sys.stderr.isatty() if progress is None else progress
-    about = f"tongues, about {search_seconds(model, lowest_speed, highest_speed):.0f} s" if shown else ""
+    about = f"tongues, about {search_seconds(model, (low, high)):.0f} s" if shown else ""
     with tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar:
-        curve = MultiplierCurve.of(model, lowest_speed, highest_speed, method, bar.update)
+        curve = MultiplierCurve.of(model, low, high, method, bar.update)
         if curve.error > threshold:
             raise ArithmeticError(
                 f"multipliers are known to {curve.error:.2g} only, rounding counted, which is not enough for a "
@@ -149,12 +143,12 @@ def tongues(
     return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
 
 
-def search_seconds(model: Model, lowest_speed: float, highest_speed: float) -> float:
+def search_seconds(model: Model, speeds: ArrayLike) -> float:
     """Estimate how long :func:`tongues` takes for a model, without computing any of it.
 
     Parameters
     ----------
-    model, lowest_speed, highest_speed
+    model, speeds
         As for :func:`tongues`.
 
     Returns
@@ -169,12 +163,12 @@ def search_seconds(model: Model, lowest_speed: float, highest_speed: float) -> f
     >>> from facegear.floquet.models import replace_parameter
     >>> small = FIGURES["4.4a"].model()
     >>> large = replace_parameter(small, "nodal_diameters", 6)
-    >>> search_seconds(large, 50.0, 70.0) > 4.0 * search_seconds(small, 50.0, 70.0)
+    >>> search_seconds(large, (50.0, 70.0)) > 4.0 * search_seconds(small, (50.0, 70.0))
     True
     """
-    lowest_speed, highest_speed = ascending("speed_range", (lowest_speed, highest_speed), "rad/s")
-    motions = FrozenMotions.of(model, 1.0 / highest_speed, 1.0 / lowest_speed)
-    size = 2 * model.system(highest_speed).size
+    low, high = ascending("speeds", speeds, "rad/s")
+    motions = FrozenMotions.of(model, 1.0 / high, 1.0 / low)
+    size = 2 * model.system(high).size
     samples = motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES).size
     return float(samples * _SECONDS * size**_POWER)
 
@@ -197,8 +191,7 @@ def borders(
     model: Model,
     parameter: str,
     values: ArrayLike,
-    lowest_speed: float,
-    highest_speed: float,
+    speeds: ArrayLike,
     *,
     method: Method | None = None,
     threshold: float = 1e-8,
@@ -210,7 +203,7 @@ def borders(
 
     Parameters
     ----------
-    model, lowest_speed, highest_speed, method, threshold
+    model, speeds, method, threshold
         As for :func:`tongues`.
     parameter : str
         Name of the swept parameter, as for :func:`facegear.maps.stability_map.stability_map`.
@@ -234,8 +227,9 @@ def borders(
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"values must list at least one value of the parameter, got shape {array.shape}")
     parameter_path(model, parameter)
+    low_high = ascending("speeds", speeds, "rad/s")
     searches = [
-        _Search(replace_parameter(model, parameter, value), lowest_speed, highest_speed, method, threshold)
+        _Search(replace_parameter(model, parameter, value), low_high, method, threshold)
         for value in array.tolist()
     ]
 
@@ -256,8 +250,7 @@ class _Search:
     """Tongues of one model, as a task whose result is an array."""
 
     model: Model
-    lowest_speed: float
-    highest_speed: float
+    speeds: tuple[float, float]
     method: Method | None
     threshold: float
     hints: tuple[float, ...] = ()
@@ -265,16 +258,15 @@ class _Search:
     def content(self) -> Iterator[Any]:
         """Everything the result depends on: of the model's code, what it makes of both ends and the middle."""
         yield repr(self)
-        middle = (self.lowest_speed + self.highest_speed) / 2.0
-        for speed in (self.lowest_speed, middle, self.highest_speed):
+        low, high = self.speeds
+        for speed in (low, (low + high) / 2.0, high):
             yield from parts_of(self.model.system(speed))
 
     def compute(self) -> FloatArray:
         """Borders, peak, growth rate, modes, kind and order, one row a tongue."""
         found = tongues(
             self.model,
-            self.lowest_speed,
-            self.highest_speed,
+            self.speeds,
             method=self.method,
             threshold=self.threshold,
             hints=self.hints,

@@ -196,7 +196,7 @@ class Mathieu:
     Its tongues between two frequencies [rad/s]; at the second one, at 1, there is none with so much damping.
 
     >>> from facegear.maps.tracing import tongues
-    >>> [tongue.label for tongue in tongues(Mathieu(depth=0.2, damping_ratio=0.02), 0.8, 2.4)]
+    >>> [tongue.label for tongue in tongues(Mathieu(depth=0.2, damping_ratio=0.02), (0.8, 2.4))]
     ['(1+1)/1']
     """
 

@@ -14,9 +14,9 @@ LOAD = MeshLoad(stiffness=0.8, damping=1e-5, mass=1.0)
     ("call", "message"),
     [
         (lambda: design.Requirements(1.0, 1.0, 0.5, (1.0, 2.0)), "safety_factor"),
-        (lambda: design.Requirements(1.0, 1.0, 1.5, (2.0, 1.0)), "speed_range"),
-        (lambda: design.critical_thickness(DRIVE, LOAD, (30.0, 20.0)), "speed_range"),
-        (lambda: design.critical_thickness(DRIVE, LOAD, (1.0, 2.0, 3.0)), "speed_range"),
+        (lambda: design.Requirements(1.0, 1.0, 1.5, (2.0, 1.0)), "speeds"),
+        (lambda: design.critical_thickness(DRIVE, LOAD, (30.0, 20.0)), "speeds"),
+        (lambda: design.critical_thickness(DRIVE, LOAD, (1.0, 2.0, 3.0)), "speeds"),
         (
             lambda: design.critical_thickness(DRIVE, LOAD, (20.0, 30.0), thickness_range=(0.04, 40.0)),
             "thickness",

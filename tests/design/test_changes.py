@@ -61,7 +61,7 @@ def test_changes_change_what_they_say():
     ],
 )
 def test_slopes_are_those_of_tongues_traced_anew(model, speeds):
-    found = tongues(model, *speeds)
+    found = tongues(model, speeds)
     effects = effects_of_changes(model, found, speeds, "", followed=0)
     changes = {change.name: change for change in possible_changes(model)}
     order = effects["change_name"].values.tolist()
@@ -69,7 +69,7 @@ def test_slopes_are_those_of_tongues_traced_anew(model, speeds):
     assert (np.diff(np.abs(effects["width_slope"])) <= 0).all()
     for name in (order[0], order[-1]):
         step = 1e-3
-        ends = [tongues(changes[name].apply(model, sign * step), *speeds) for sign in (1, -1)]
+        ends = [tongues(changes[name].apply(model, sign * step), speeds) for sign in (1, -1)]
         width = (unstable_width(ends[0]) - unstable_width(ends[1])) / (2 * step)
         growth = np.diff([max(tongue.growth_rate for tongue in end) for end in reversed(ends)])[0] / (
             2 * step
@@ -80,12 +80,12 @@ def test_slopes_are_those_of_tongues_traced_anew(model, speeds):
 
 
 def test_best_changes_are_made_in_earnest_in_the_better_direction():
-    found = tongues(CASE_1, *RANGE)
+    found = tongues(CASE_1, RANGE)
     effects = effects_of_changes(CASE_1, found, RANGE, "", followed=1)
     best = effects["change_name"].values[0]
     (change,) = [change for change in possible_changes(CASE_1) if change.name == best]
     sign = -np.sign(effects["width_slope"].values[0])
-    after = tongues(change.apply(CASE_1, 0.1 * sign), *RANGE)
+    after = tongues(change.apply(CASE_1, 0.1 * sign), RANGE)
     assert float(effects["width_after"][0]) == pytest.approx(rpm(unstable_width(after)), rel=1e-9)
     assert unstable_width(after) < unstable_width(found)
     assert np.isnan(effects["width_after"][1:]).all()
@@ -94,7 +94,7 @@ def test_best_changes_are_made_in_earnest_in_the_better_direction():
 @pytest.mark.slow
 def test_a_change_out_of_range_is_left_out():
     thin = replace(CASE_1, body=replace(CASE_1.body, bore_radius=0.0125))
-    found = tongues(thin, *RANGE)
+    found = tongues(thin, RANGE)
     effects = effects_of_changes(thin, found, RANGE, "", followed=6)
     after = dict(zip(effects["change_name"].values.tolist(), effects["width_after"].values, strict=True))
     # Ten percent less and b/a is below 0.05, which the body refuses.

@@ -75,7 +75,7 @@ class SpringyTeeth:
 BODY = Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=0, nodal_diameters=1)
 MODEL = SpringyTeeth(BODY, tooth_stiffness=2e6, bearing_stiffness=5e5, pinion_mass=0.5)
 SPEEDS = (30.0, 45.0)
-FOUND = tongues(MODEL, *SPEEDS)
+FOUND = tongues(MODEL, SPEEDS)
 
 
 def by_integration(system):
@@ -133,7 +133,7 @@ def test_map_over_any_parameter(parameter):
 
 
 def test_borders_over_a_parameter():
-    (section,) = borders(MODEL, "tooth_stiffness", [2e6], *SPEEDS, jobs=1, progress=False)
+    (section,) = borders(MODEL, "tooth_stiffness", [2e6], SPEEDS, jobs=1, progress=False)
     assert [tongue.label for tongue in section.tongues] == [tongue.label for tongue in FOUND]
 
 

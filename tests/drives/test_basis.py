@@ -67,11 +67,11 @@ class TestWithBasis:
             c_b=3e-6 * CASE_1.bearing_stiffness,
             k_b=CASE_1.bearing_stiffness,
         )
-        (tongue,) = tongues(model, float(rad_per_s(505.0)), float(rad_per_s(515.0)))
+        (tongue,) = tongues(model, (float(rad_per_s(505.0)), float(rad_per_s(515.0))))
         # Unstable here with five nodal diameters, stable with the printed three.
         assert np.abs(found).max() > 1.0
         assert tongue.lower < speed < tongue.upper
-        assert not tongues(CASE_1, float(rad_per_s(505.0)), float(rad_per_s(515.0)))
+        assert not tongues(CASE_1, (float(rad_per_s(505.0)), float(rad_per_s(515.0))))
 
 
 class TestSettledTongues:

@@ -44,7 +44,7 @@ def test_cases_are_those_of_the_dissertation(name, body):
     assert found.transverse.body.bore_radius == pytest.approx(body.bore_radius, rel=1e-15)
     assert found.transverse.body.material == body.material
     assert found.transverse.body.thickness_ratio == body.thickness_ratio
-    assert found.requirements.speed_range == pytest.approx((rad_per_s(100.0), rad_per_s(1000.0)), rel=1e-15)
+    assert found.requirements.speeds == pytest.approx((rad_per_s(100.0), rad_per_s(1000.0)), rel=1e-15)
     assert found.torsional is None
 
 
@@ -119,9 +119,9 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
     file = parse_drive(yaml.safe_dump(content))
     duty, model = file.requirements, file.transverse
     driven = replace(model, force=DrivingForce(duty.power, duty.pinion_speed))
-    assert np.isfinite(driven.system(duty.speed_range[1]).stiffness).all()
+    assert np.isfinite(driven.system(duty.speeds[1]).stiffness).all()
     with pytest.raises(ValueError, match="speed must lie in"):
-        driven.system(1.001 * duty.speed_range[1])
+        driven.system(1.001 * duty.speeds[1])
 
 
 # --- mistakes that people make ----------------------------------------------------------------------------------
@@ -475,7 +475,7 @@ def test_any_bytes_are_refused(content):
 def test_what_is_valid_gives_systems(case):
     found = checked(yaml.safe_dump(case[0], allow_unicode=True))
     if isinstance(found, DriveFile):
-        for speed in found.requirements.speed_range:
+        for speed in found.requirements.speeds:
             for model in (found.transverse, found.torsional):
                 system = model.system(speed)
                 for load in system.loads:

@@ -23,7 +23,7 @@ CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
 EXAMPLE_B = read_drive_file(DRIVES / "example_b.yaml")
 BOX = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
 RANGE = (float(rad_per_s(500.0)), float(rad_per_s(720.0)))
-FOUND = tongues(CASE_1.transverse, *RANGE)
+FOUND = tongues(CASE_1.transverse, RANGE)
 
 
 def values(rows):
@@ -96,9 +96,9 @@ def test_windows_of_a_stable_and_of_an_unstable_range():
     (window,) = report.safe_windows(empty, RANGE)["lower"].values
     assert window == pytest.approx(500.0)
     inside = (FOUND[0].lower + 1e-3, FOUND[0].upper - 1e-3)
-    assert report.safe_windows(
-        report.tongue_table(tongues(CASE_1.transverse, *inside), ""), inside
-    ).sizes == {"window": 0}
+    assert report.safe_windows(report.tongue_table(tongues(CASE_1.transverse, inside), ""), inside).sizes == {
+        "window": 0
+    }
 
 
 def test_combinations_cross_the_mesh_frequency_in_their_tongues():
@@ -141,7 +141,7 @@ def test_critical_thickness_parts_stable_from_unstable(force):
     critical = report.critical_thickness(model, RANGE).critical.thickness_ratio
     for factor, stable in ((1.004, True), (0.996, False)):
         body = replace(model.body, thickness_ratio=factor * critical)
-        assert bool(tongues(replace(model, body=body), *RANGE)) != stable
+        assert bool(tongues(replace(model, body=body), RANGE)) != stable
 
 
 @pytest.mark.slow

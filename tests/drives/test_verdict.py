@@ -28,13 +28,13 @@ RANGE = (10.0, 110.0)
 
 def in_range(file, low, high):
     speeds = (float(rad_per_s(low)), float(rad_per_s(high)))
-    return replace(file, requirements=replace(file.requirements, speed_range=speeds))
+    return replace(file, requirements=replace(file.requirements, speeds=speeds))
 
 
 class TestDrivenModel:
     def test_case_1_flutters_under_its_own_power(self):
         """36 of 37 speeds on the true sweep and 35 with Tregold's ratio; none, or 7, where the force is left out."""
-        speeds = np.linspace(*CASE_1.requirements.speed_range, 37)
+        speeds = np.linspace(*CASE_1.requirements.speeds, 37)
         counts = {}
         for clock, ratio in verdict.clocks(CASE_1).items():
             for force in ("follower", "dead"):
@@ -101,7 +101,7 @@ BAD = ((20.0, 30.0, 2.0),)
 
 
 class TestWords:
-    FILE = replace(CASE_1, requirements=replace(CASE_1.requirements, speed_range=RANGE))
+    FILE = replace(CASE_1, requirements=replace(CASE_1.requirements, speeds=RANGE))
 
     def said(self, *computed, torsional=None):
         return verdict.verdict(self.FILE, computed, torsional)

@@ -114,5 +114,5 @@ def test_dampers_too_strong_for_the_threshold_are_refused_with_a_way_out():
     with pytest.raises(
         ArithmeticError, match=r"known to .* only, rounding counted.*facegear\.floquet\.radau\.Radau"
     ):
-        tongues(Damped(1e9), 1.0, 2.0, method=Magnus(16))
-    assert tongues(Damped(1e7), 1.0, 2.0, method=Radau()) == ()
+        tongues(Damped(1e9), (1.0, 2.0), method=Magnus(16))
+    assert tongues(Damped(1e7), (1.0, 2.0), method=Radau()) == ()

@@ -74,7 +74,7 @@ def test_resonances_of_higher_order_than_averaging_sees_are_named_by_their_phase
         def system(self, speed):
             return replace(mathieu, period=TURN / speed)
 
-    found = tongues(Model(), 22.0, 130.0)
+    found = tongues(Model(), (22.0, 130.0))
     assert [tongue.label for tongue in found] == ["(1+1)/4", "(1+1)/3", "(1+1)/2", "(1+1)/1"]
 
 
@@ -85,7 +85,7 @@ def test_combination_resonances_of_second_order_are_named():
         def system(self, speed):
             return replace(pair, period=TURN / speed)
 
-    found = {tongue.label: tongue for tongue in tongues(Model(), 45.0, 56.0)}
+    found = {tongue.label: tongue for tongue in tongues(Model(), (45.0, 56.0))}
     assert "(1+2)/2" in found
     assert found["(1+2)/2"].peak == pytest.approx(50.5, rel=0.02)
 
@@ -94,7 +94,7 @@ def test_tongues_of_the_transverse_model_have_the_labels_of_averaging():
     model = Transverse(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0))
     low, high = rad_per_s(np.array([500.0, 1000.0]))
     bands = band_speeds(model, (float(low), float(high)), order=1)
-    found = tongues(model, float(low), float(high))
+    found = tongues(model, (float(low), float(high)))
     assert len(found) == 4
     for tongue in found:
         overlapping = {

@@ -60,9 +60,9 @@ def test_what_is_left_of_two_free_masses_is_mathieus_equation(depth, damping_rat
 def test_tongues_name_the_motion_and_find_all_when_it_is_out():
     pair = FreePair(0.3, 0.01)
     with pytest.raises(ValueError, match=r"1 rigid-body motion\(s\), along \(1, 1\).*WithoutRigidMotion"):
-        tongues(pair, 0.8, 2.5)
+        tongues(pair, (0.8, 2.5))
 
-    found, expected = tongues(WithoutRigidMotion(pair), 0.8, 2.5), tongues(Mathieu(0.3, 0.01), 0.8, 2.5)
+    found, expected = tongues(WithoutRigidMotion(pair), (0.8, 2.5)), tongues(Mathieu(0.3, 0.01), (0.8, 2.5))
     assert len(found) == len(expected) == 2
     for one, other in zip(found, expected, strict=True):
         assert (one.lower, one.upper) == pytest.approx((other.lower, other.upper), rel=1e-7)

@@ -195,7 +195,7 @@ def slow_tongues():
     """Growth at the peaks of the tongues of Fig. 4.4(a) between 25 and 100 rpm, μ = 0.25."""
     load = load_of(FIGURES["4.4a"], 0.25)
     model = replace_parameter(FIGURES["4.4a"].model(), "stiffness", 0.25)
-    for number, tongue in enumerate(tongues(model, rpm(25.0), rpm(100.0))):
+    for number, tongue in enumerate(tongues(model, (rpm(25.0), rpm(100.0)))):
         radius, period = spectral_radius(CASE_1, tongue.peak * 30 / np.pi, **load)
         tolerance = 10 * RADIUS_TOLERANCE / (radius * period)
         yield anchor("largest_growth", np.log(radius) / period, tolerance, section=0.25, tongue=number)
@@ -261,7 +261,7 @@ def rule(number, stiffnesses):
     row = 0
     for value in stiffnesses:
         model = replace_parameter(figure.model(), "stiffness", value)
-        for tongue in tongues(model, rpm(100.0), rpm(1000.0)):
+        for tongue in tongues(model, (rpm(100.0), rpm(1000.0))):
             peak = tongue.peak * 30 / np.pi
             if any(value == at and low < peak < high for at, (low, high) in RULE_PLACES[number]):
                 hertz = mean_frequencies(figure.body, peak, **load_of(figure, value)) / (2 * np.pi)

@@ -38,8 +38,7 @@ def strongest(body, low_rpm, high_rpm, contact_ratio=None):
     """Speed of the strongest tongue between two speeds [rpm]."""
     found = tongues(
         fg.Transverse(body, LOAD, contact=fg.Contact(contact_ratio=contact_ratio)),
-        rpm(low_rpm),
-        rpm(high_rpm),
+        (rpm(low_rpm), rpm(high_rpm)),
     )
     return float(fg.rpm(max(found, key=lambda tongue: tongue.growth_rate).peak))
 
@@ -87,7 +86,7 @@ def chart(drive, places, ratio=0.033):
     """Cells of a map, and the largest growth of the two strongest tongues of one section."""
     yield from cells(drive, places)
     body = fg.Body(drive, ratio)
-    found = tongues(fg.Transverse(body, LOAD), rpm(100.0), rpm(1000.0))
+    found = tongues(fg.Transverse(body, LOAD), (rpm(100.0), rpm(1000.0)))
     strong = sorted(range(len(found)), key=lambda number: -found[number].growth_rate)[:2]
     for number in strong:
         value, tolerance = growth(body, float(fg.rpm(found[number].peak)))
@@ -178,8 +177,7 @@ def geometric():
         speed = strongest(body, 380.0, 480.0, contact_ratio)
         found = tongues(
             fg.Transverse(body, LOAD, contact=fg.Contact(contact_ratio=contact_ratio)),
-            rpm(100.0),
-            rpm(1000.0),
+            (rpm(100.0), rpm(1000.0)),
         )
         number = int(np.argmin([abs(fg.rpm(tongue.peak) - speed) for tongue in found]))
         value, tolerance = growth(body, speed, contact_ratio)

@@ -263,7 +263,7 @@ def limit(number, variant, parameter, value, stiffness=None):
     if stiffness is not None:
         model = replace_parameter(model, "stiffness", stiffness)
     model = replace_parameter(model, parameter, value)
-    place = largest_power(model, rpm(200.0), rpm(1000.0))
+    place = largest_power(model, (rpm(200.0), rpm(1000.0)))
     load = replace(model.load)
 
     def log_radius(power):

@@ -152,7 +152,7 @@ def hsu_errors():
         model = ScaledModulation(gearbox, depth)
         reach = 2 * half / s / n.N2
         label = f"({k + 1}+{j + 1})/{s}"
-        found = [t for t in tongues(model, middle - 2 * reach, middle + 2 * reach) if t.label == label]
+        found = [t for t in tongues(model, (middle - 2 * reach, middle + 2 * reach)) if t.label == label]
         low, high = float(fg.rpm(found[0].lower)), float(fg.rpm(found[-1].upper))
         for side in ("lower", "upper"):
             value = undamped_border(n, low, high, depth, side)
@@ -165,12 +165,12 @@ def openings():
     n = numbers_of(gearbox)
     limits = [tuple(float(fg.rad_per_s(v)) for v in place) for place in places.values()]
     for row, depth in ((0, 0.9), (1, 0.7), (2, 0.9), (3, 0.7), (3, 1.1)):
-        speed, _ = largest_growth(ScaledModulation(gearbox, depth), *limits[row])
+        speed, _ = largest_growth(ScaledModulation(gearbox, depth), limits[row])
         yield anchor("growth_rate", growth(n, float(fg.rpm(speed)), depth), 1e-3, resonance=row, depth=depth)
     for row, depth in ((0, 0.206), (1, 0.637), (3, 0.7757)):
         model = ScaledModulation(gearbox, 1.0)
         (found,) = growth_peaks(
-            model, "depth", [depth - 0.05, depth, depth + 0.05], *limits[row]
+            model, "depth", [depth - 0.05, depth, depth + 0.05], limits[row]
         ).closing_values
         yield anchor(
             "opening",
@@ -223,7 +223,7 @@ def variants(name):
     models = list(of_package(gearbox).values())
     low, high = (float(fg.rad_per_s(limit)) for limit in (140.0, 1500.0))
     for row, (n, _) in chosen.items():
-        found = tongues(models[row], low, high)
+        found = tongues(models[row], (low, high))
         for number in sorted({0, len(found) - 1}):
             for side in ("lower", "upper"):
                 near = float(fg.rpm(getattr(found[number], side)))
@@ -283,7 +283,7 @@ def levers():
     for name, gearbox in CASES.items():
         n = numbers_of(gearbox)
         low, high = (float(fg.rad_per_s(limit)) for limit in (140.0, 1460.0))
-        for tongue in tongues(gearbox.torsional, low, high):
+        for tongue in tongues(gearbox.torsional, (low, high)):
             if tongue.lower <= low or tongue.upper >= high:
                 continue
             wanted = {("7.12a", "(1+1)/1"): ("J2", "km", "c1"), ("7.12b", "(1+3)/2"): ("k2", "cm")}
@@ -324,7 +324,7 @@ def closing(name, parameter, chosen):
         low, high = (float(fg.rad_per_s(limit)) for limit in limits)
         for column, near in enumerate(roots):
             around = near * np.array([0.8, 1.0, 1.25])
-            (found,) = growth_peaks(gearbox, parameter, around, low, high).closing_values
+            (found,) = growth_peaks(gearbox, parameter, around, (low, high)).closing_values
             speed = float(fg.rpm(found.speed))
             value = crossing(lambda c, v=speed: growth(replace(n, **{field: c * stiffness}), v), found.value)
             yield anchor("closing_damping", value, 2e-6 * value, tongue=row, root=column)

@@ -46,7 +46,7 @@ def test_largest_growth_of_a_tongue_and_of_a_stable_range(undamped):
     speed, growth = undamped
     for p in (1.0, 3.0):
         model = Shifted(p)
-        found = largest_growth(model, 1.7, 2.3)
+        found = largest_growth(model, (1.7, 2.3))
         assert found[1] == pytest.approx(growth - model.c, abs=1e-9)
         assert found[0] == pytest.approx(speed, abs=1e-4)
 
@@ -54,7 +54,7 @@ def test_largest_growth_of_a_tongue_and_of_a_stable_range(undamped):
 def test_every_value_between_samples_is_found(undamped):
     _, growth = undamped
     width = np.sqrt((growth - 0.02) / 0.05)
-    found = growth_peaks(Shifted(), "p", np.linspace(-0.5, 2.5, 4), 1.7, 2.3)
+    found = growth_peaks(Shifted(), "p", np.linspace(-0.5, 2.5, 4), (1.7, 2.3))
     values = [closing.value for closing in found.closing_values]
     np.testing.assert_allclose(values, [1.0 - width, 1.0 + width], rtol=1e-6)
     assert [closing.closes for closing in found.closing_values] == [False, True]
@@ -69,7 +69,7 @@ def test_two_values_between_neighbouring_samples_are_found(undamped):
     _, growth = undamped
     model = Shifted(0.0, growth - depth)
     half = np.sqrt(depth / 0.05)
-    found = growth_peaks(model, "p", [0.0, 0.55, 1.3, 2.0], 1.7, 2.3).closing_values
+    found = growth_peaks(model, "p", [0.0, 0.55, 1.3, 2.0], (1.7, 2.3)).closing_values
     np.testing.assert_allclose([closing.value for closing in found], [1.0 - half, 1.0 + half], rtol=1e-4)
     assert [closing.closes for closing in found] == [False, True]
 
@@ -77,27 +77,27 @@ def test_two_values_between_neighbouring_samples_are_found(undamped):
 def test_nothing_is_found_where_nothing_closes(undamped):
     _, growth = undamped
     barely = Shifted(0.0, growth + 1e-5)
-    assert growth_peaks(barely, "p", [0.0, 0.55, 1.3, 2.0], 1.7, 2.3).closing_values == ()
+    assert growth_peaks(barely, "p", [0.0, 0.55, 1.3, 2.0], (1.7, 2.3)).closing_values == ()
 
 
 class TestRefusals:
     @pytest.mark.parametrize("values", [[0.0, 1.0], [0.0, 2.0, 1.0], [[0.0, 1.0, 2.0]]])
     def test_values(self, values):
         with pytest.raises(ValueError, match="values must be at least three, ascending"):
-            growth_peaks(Shifted(), "p", values, 1.7, 2.3)
+            growth_peaks(Shifted(), "p", values, (1.7, 2.3))
 
     def test_values_that_are_not_finite(self):
         with pytest.raises(ValueError, match="values must be finite"):
-            growth_peaks(Shifted(), "p", [0.0, 1.0, np.nan], 1.7, 2.3)
+            growth_peaks(Shifted(), "p", [0.0, 1.0, np.nan], (1.7, 2.3))
 
     def test_range_of_speed(self):
-        with pytest.raises(ValueError, match="highest_speed must be greater than lowest_speed"):
-            largest_growth(Shifted(), 2.3, 1.7)
+        with pytest.raises(ValueError, match="speeds must ascend"):
+            largest_growth(Shifted(), (2.3, 1.7))
 
     def test_parameter(self):
         with pytest.raises(ValueError, match="parameter must be one of"):
-            growth_peaks(Shifted(), "damping", [0.0, 1.0, 2.0], 1.7, 2.3)
+            growth_peaks(Shifted(), "damping", [0.0, 1.0, 2.0], (1.7, 2.3))
 
     def test_tongue_that_leaves_the_range(self):
         with pytest.raises(ArithmeticError, match="widen the range"):
-            growth_peaks(Shifted(), "p", np.linspace(0.0, 2.5, 4), 1.7, 1.95)
+            growth_peaks(Shifted(), "p", np.linspace(0.0, 2.5, 4), (1.7, 1.95))

@@ -175,13 +175,13 @@ def test_units_of_mass_and_time_change_no_multiplier(speed_rpm, damping):
 
 def test_width_of_a_tongue_moves_as_its_derivative_says():
     model = SWING
-    (tongue,) = tongues(model, 1.5, 2.5)
+    (tongue,) = tongues(model, (1.5, 2.5))
     names = ("depth", "damping_ratio", "natural_frequency")
     upper, lower = (border_derivatives(model, at, names) for at in (tongue.upper, tongue.lower))
     found = upper - lower
     for name, exact in zip(names[:2], found[:2], strict=True):
         order, error = relative_orders(
-            lambda x, name=name: tongues(replace_parameter(model, name, x), 1.5, 2.5)[0].width,
+            lambda x, name=name: tongues(replace_parameter(model, name, x), (1.5, 2.5))[0].width,
             getattr(model, name),
             float(exact),
             (0.08, 0.04, 0.02),
@@ -206,7 +206,7 @@ def test_borders_follow_the_characteristic_curves_as_damping_goes_to_zero():
     ratios, errors = (0.008, 0.004, 0.002), {0: [], 1: []}
     for zeta in ratios:
         model = Mathieu(depth, zeta)
-        (tongue,) = tongues(model, 1.5, 2.5)
+        (tongue,) = tongues(model, (1.5, 2.5))
         for number, border in enumerate((tongue.lower, tongue.upper)):
             # (2/ω)² = a(q), q = ε a/2 (the sign of q is a shift by half a period): implicit differentiation.
             a = 4.0 / border**2

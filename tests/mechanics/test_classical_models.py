@@ -82,7 +82,7 @@ def test_map(case):
 
 
 def test_tongue_and_its_label(case):
-    (tongue,) = (t for t in fg.tongues(case.model, *case.window) if t.lower < case.inside < t.upper)
+    (tongue,) = (t for t in fg.tongues(case.model, case.window) if t.lower < case.inside < t.upper)
     assert tongue.label == case.label
 
     def growth(frequency):
@@ -100,6 +100,10 @@ def test_cell(case):
     assert detail.label == combination(case.model.system(case.inside)).label == case.label
     assert detail.tongue.lower < case.inside < detail.tongue.upper
     assert cell_detail(case.model, case.outside).tongue is None
+    assert len(case.model.coordinates) == case.model.system(1.0).size
+    assert [str(name) for name in detail.history["coordinate"].values] == [
+        c.name for c in case.model.coordinates
+    ]
 
 
 def test_parameters_are_replaced_by_name(case):

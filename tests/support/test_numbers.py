@@ -161,7 +161,7 @@ FUNCTIONS = {
     ),
     "system": (lambda speed: Transverse(BODY, LOAD).system(speed), {"speed": 50.3}),
     "tongues": (
-        lambda low, high, threshold: tongues(classical.Mathieu(0.3, 0.01), low, high, threshold=threshold),
+        lambda low, high, threshold: tongues(classical.Mathieu(0.3, 0.01), (low, high), threshold=threshold),
         {"low": 1.7, "high": 2.3, "threshold": 1e-3},
     ),
     "stability_map": (

@@ -62,7 +62,7 @@ def test_papermill_makes_the_report_in_any_folder(tmp_path, example):
 
     models = [f"{clock}, {force}" for clock in ("Tregold", "true sweep") for force in FORCES]
     models += ["torsion"] * (file.torsional is not None)
-    low, high = (30 / 3.141592653589793 * speed for speed in file.requirements.speed_range)
+    low, high = (30 / 3.141592653589793 * speed for speed in file.requirements.speeds)
     unstable, safe = rows(results / "tongues.csv"), rows(results / "safe_windows.csv")
     for model in models:
         parts = [row for table in (unstable, safe) for row in table if row["model"] == model]

@@ -239,7 +239,7 @@ def thickness_figure(
 
 
 def lobe_near_tip(
-    model: Transverse, lobe: Lobe, speed_range: tuple[float, float], depths: Sequence[float]
+    model: Transverse, lobe: Lobe, speeds: tuple[float, float], depths: Sequence[float]
 ) -> xr.Dataset:
     """Width of a lobe at some distances below its tip.
 
@@ -247,7 +247,7 @@ def lobe_near_tip(
     ----------
     model : Transverse
     lobe : Lobe
-    speed_range : tuple of float
+    speeds : tuple of float
         Speeds between which no other lobe lies there [rad/s].
     depths : sequence of float
         Distances below the tip, relative to its thickness ratio, ascending, in (0, 1).
@@ -258,7 +258,7 @@ def lobe_near_tip(
         ``width`` [rpm] of all tongues together and ``largest_growth`` [1/s] over ``thickness_ratio``.
     """
     ratios = lobe.thickness_ratio * (1.0 - np.asarray(depths, dtype=float))
-    found = [tongues(replace_parameter(model, "thickness_ratio", float(x)), *speed_range) for x in ratios]
+    found = [tongues(replace_parameter(model, "thickness_ratio", float(x)), speeds) for x in ratios]
     widths = [float(rpm(sum(tongue.width for tongue in row))) for row in found]
     growth = [max((tongue.growth_rate for tongue in row), default=0.0) for row in found]
     # The ratios hang on the traced tip, whose tolerance of 1e-5 is a part of the smallest depths.
@@ -268,9 +268,7 @@ def lobe_near_tip(
             "largest_growth": variable("depth", growth, "Largest growth rate", "1/s", rtol=0.02, atol=0.02),
         },
         coords={"depth": np.asarray(depths, dtype=float)},
-        attrs={
-            "parameters": f"label = {lobe.label}, speeds = {speed_range[0]:.8g} to {speed_range[1]:.8g} rad/s"
-        },
+        attrs={"parameters": f"label = {lobe.label}, speeds = {speeds[0]:.8g} to {speeds[1]:.8g} rad/s"},
     )
 
 

@@ -128,8 +128,7 @@ def hsu_errors(resonances: Sequence[tuple[Torsional, Combination]], depths: Arra
             middle, width = (low + high) / 2.0, high - low
             found = tongues(
                 model,
-                middle - 2.0 * width,
-                middle + 1.2 * width,
+                (middle - 2.0 * width, middle + 1.2 * width),
                 method=_METHOD,
                 threshold=1e-7,
                 hints=[middle],
@@ -193,7 +192,7 @@ def openings(
     growth, opened, hsu = [], [], []
     for combination, limits in ranges_rpm.items():
         low, high = (float(rad_per_s(limit)) for limit in limits)
-        peaks = growth_peaks(ScaledModulation(model, 1.0), "depth", axis, low, high, method=_METHOD)
+        peaks = growth_peaks(ScaledModulation(model, 1.0), "depth", axis, (low, high), method=_METHOD)
         growth.append(peaks.growth_rates)
         opened.append(next((c.value for c in peaks.closing_values if not c.closes), np.nan))
         hsu.append(_hsu_growth(model, combination, (low + high) / 2.0))

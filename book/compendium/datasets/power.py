@@ -231,7 +231,7 @@ def power_envelope(
     low, high = (float(rad_per_s(v)) for v in speeds_rpm)
     found = [
         [
-            largest_power(replace_parameter(model, parameter, value), low, high)
+            largest_power(replace_parameter(model, parameter, value), (low, high))
             for value in finite_array("values", values)
         ]
         for model in models.values()

@@ -275,7 +275,9 @@ def traced_sections(figure: TorsionalFigure, values: ArrayLike, *, jobs: int = -
     low, high = rad_per_s(figure.lowest_rpm), rad_per_s(HIGHEST_SPEED_RPM)
     found = [
         section.tongues
-        for section in borders(figure.model(), figure.parameter, values, low, high, method=METHOD, jobs=jobs)
+        for section in borders(
+            figure.model(), figure.parameter, values, (low, high), method=METHOD, jobs=jobs
+        )
     ]
     both = ("section", "tongue")
     tables = {name: filled_rows(found, name) for name in ("lower", "upper", "peak", "growth_rate")}
@@ -367,7 +369,7 @@ def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
     """
     model = replace_parameter(figure.model(), figure.parameter, value)
     span = (figure.lowest_rpm, HIGHEST_SPEED_RPM)
-    traced = tongues(model, rad_per_s(span[0]), rad_per_s(span[1]), method=METHOD)
+    traced = tongues(model, (rad_per_s(span[0]), rad_per_s(span[1])), method=METHOD)
     routes = {"floquet": traced, "hsu": hsu_bands(model, span), "blocks": block_bands(model, span)}
     bands = {name: _by_label(found) for name, found in routes.items()}
     first = {label: ends[0] for found in reversed(bands.values()) for label, ends in found.items()}

@@ -79,7 +79,7 @@ def variant_tongues(models: Mapping[str, Torsional], speeds_rpm: tuple[float, fl
         coordinate ``variant_name``, labels in ``label``.
     """
     low, high = (float(rad_per_s(limit)) for limit in speeds_rpm)
-    found = [tongues(model, low, high, method=_METHOD) for model in models.values()]
+    found = [tongues(model, (low, high), method=_METHOD) for model in models.values()]
     orders = np.arange(1, 5)
 
     table = partial(filled_rows, found)
@@ -216,7 +216,7 @@ def levers(cases: Mapping[str, Torsional], speeds_rpm: tuple[float, float]) -> x
     for case, given in cases.items():
         # Its own parameters, in SI: what the ratios of the captions tie together varies one by one.
         model = replace(given, gearbox=given.gearbox.in_si)
-        for tongue in tongues(model, low, high, method=_METHOD):
+        for tongue in tongues(model, (low, high), method=_METHOD):
             if tongue.lower <= low or tongue.upper >= high:
                 continue
             values = np.array([parameter_value(model, tongue.peak, name) for name in PARAMETERS])
@@ -288,7 +288,7 @@ def closing(
     rows: list[GrowthPeaks] = []
     for label, limits in ranges_rpm.items():
         low, high = (float(rad_per_s(limit)) for limit in limits)
-        rows.append(growth_peaks(model, parameter, axis, low, high, method=_METHOD))
+        rows.append(growth_peaks(model, parameter, axis, (low, high), method=_METHOD))
         for closing_value in rows[-1].closing_values:
             if closing_value.label != label:
                 raise ArithmeticError(

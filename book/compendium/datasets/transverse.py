@@ -171,7 +171,7 @@ def tongue_free(model: Transverse, chart: xr.Dataset, lowest_rpm: float) -> tupl
 
     @cache
     def free(row: int) -> bool:
-        return not tongues(replace_parameter(model, name, values[row]), low, high)
+        return not tongues(replace_parameter(model, name, values[row]), (low, high))
 
     stable = np.concatenate([[False], ~(growth.values > 0.0).any(axis=1), [False]])
     starts, stops = np.flatnonzero(stable[1:] & ~stable[:-1]), np.flatnonzero(~stable[1:] & stable[:-1]) - 1
@@ -223,7 +223,7 @@ def resonances_of_bearing(
     for value in np.asarray(values, dtype=float).tolist():
         softened = replace_parameter(model, "stiffness", value)
         bearing = math.sqrt(softened.bearing_stiffness / softened.pinion_mass)
-        for tongue in tongues(softened, low, high):
+        for tongue in tongues(softened, (low, high)):
             named = tongue.combination
             modes = modal_expansion(softened.system(tongue.peak), 1).frequencies
             pair = modes[named.k - 1], modes[named.j - 1]
@@ -277,7 +277,7 @@ def tongue_sections(
         coordinate ``label``, empty there.
     """
     low, high = rad_per_s(speeds_rpm[0]), rad_per_s(speeds_rpm[1])
-    sections = borders(model, parameter, values, low, high, jobs=jobs)
+    sections = borders(model, parameter, values, (low, high), jobs=jobs)
     found = [section.tongues for section in sections]
     return tongue_table(found, np.asarray(values, dtype=float), f"{describe(model)}, swept = {parameter}")
 

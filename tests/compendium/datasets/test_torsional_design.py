@@ -141,7 +141,7 @@ def test_pairs_in_mesh_have_their_mean_and_harmonic():
 def test_levers_agree_with_independent_borders():
     """A percent more of J2 moves both borders as DOP853 says."""
     model = replace(LIGHT, gearbox=LIGHT.gearbox.in_si)
-    (tongue,) = tongues(model, float(rad_per_s(560.0)), float(rad_per_s(720.0)))
+    (tongue,) = tongues(model, (float(rad_per_s(560.0)), float(rad_per_s(720.0))))
     n = numbers_of(model)
     for border in (tongue.lower, tongue.upper):
         speed = float(rpm(border))
@@ -180,7 +180,7 @@ def test_every_closing_value_is_found_that_a_dense_scan_of_tongues_sees():
     model = FIGURES["7.12a"].model()
     low, high = float(rad_per_s(295.0)), float(rad_per_s(390.0))
     scan = np.geomspace(1e-6, 3e-2, 60)
-    found = [bool(tongues(replace_parameter(model, "input_damping", c), low, high)) for c in scan.tolist()]
+    found = [bool(tongues(replace_parameter(model, "input_damping", c), (low, high))) for c in scan.tolist()]
     changes = [math.sqrt(scan[i] * scan[i + 1]) for i in range(59) if found[i] != found[i + 1]]
     data = torsional_design_arrays.closing(
         model, "input_damping", np.geomspace(1e-6, 3e-2, 8), {"(1+1)/2": (295, 390)}
