@@ -328,7 +328,7 @@ class ThicknessVerdict(NamedTuple):
     reason: str
 
 
-def critical_thickness(
+def thickness_verdict(
     model: Transverse, speeds: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
 ) -> ThicknessVerdict:
     """Thickness ratio above which the body is stable in its whole speed range.
@@ -370,11 +370,11 @@ def critical_thickness(
     return ThicknessVerdict(critical, "")
 
 
-def critical_thicknesses(
+def thickness_verdicts(
     models: Sequence[Transverse], speeds: tuple[float, float], *, jobs: int = -1
 ) -> tuple[ThicknessVerdict, ...]:
     """Critical thickness of several models, in processes, in their order."""
-    return tuple(in_processes(critical_thickness, [(model, speeds) for model in models], jobs))
+    return tuple(in_processes(thickness_verdict, [(model, speeds) for model in models], jobs))
 
 
 # --- bases ------------------------------------------------------------------------------------------------------

@@ -117,7 +117,11 @@ def stability_map(
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
     first = [model.system(float(speeds[0])) for model in sweep.models]
     loads = sweep.load_parameters(first)
-    tasks = _rows(sweep, speeds) if _goes_along_speed(sweep, speeds, loads) else _chunks(sweep, speeds, loads)
+    tasks = (
+        _rows(sweep, speeds)
+        if _goes_along_speed(sweep, speeds, loads, first)
+        else _chunks(sweep, speeds, loads)
+    )
     radii = np.empty((values.size, speeds.size))
     # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
     prefer: Workers = "threads" if all(isinstance(task, _LoadChunk) for task in tasks) else "processes"
@@ -313,13 +317,22 @@ class _Row(_ModelChunk):
 _Task = _LoadChunk | _ModelChunk
 
 
-def _goes_along_speed(sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None) -> bool:
+def _goes_along_speed(
+    sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None, first: Sequence[PeriodicSystem]
+) -> bool:
     """Tell whether series along speed take fewer matrices than any along the parameter; loads share theirs."""
     if speeds.size <= _COLUMN_MATRICES or loads is not None:
         return False
     motions = FrozenMotions.of(sweep.models[-1], 1.0 / float(speeds[-1]), 1.0 / float(speeds[0]))
     count = len(sweep.values)
-    return count * motions.matrices < speeds.size * min(count, _COLUMN_MATRICES)
+    cells = count if _cell_by_cell(sweep, first) else min(count, _COLUMN_MATRICES)
+    return count * motions.matrices < speeds.size * cells
+
+
+def _cell_by_cell(sweep: _Sweep, systems: Sequence[PeriodicSystem]) -> bool:
+    """Whether a column is no smooth function of its parameter, which counts something or moves breakpoints."""
+    few = len(sweep.values) <= len(sweep.probes) or is_whole_number(sweep.model, sweep.parameter)
+    return few or any(not _same_layout(systems[0], other) for other in systems[1:])
 
 
 def _rows(sweep: _Sweep, speeds: FloatArray) -> list[_Task]:
@@ -372,10 +385,8 @@ def _or_empty(loads: FloatArray | None) -> FloatArray:
 
 def _model_column(sweep: _Sweep, speed: float) -> FloatArray:
     """Spectral radii along one column, shape (V,)."""
-    values = np.array(sweep.values)
     systems = [sweep.models[probe].system(speed) for probe in sweep.probes]
-    alone = values.size <= len(sweep.probes) or is_whole_number(sweep.model, sweep.parameter)
-    if alone or any(not _same_layout(systems[0], other) for other in systems[1:]):
+    if _cell_by_cell(sweep, systems):
         return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
     # Coordinates in which entries are of comparable size, the same for the whole column.
     scale = Family(systems[:1]).scale

@@ -138,7 +138,7 @@ def test_map_and_tongues_agree():
 @pytest.mark.parametrize("force", ["follower", "dead"])
 def test_critical_thickness_parts_stable_from_unstable(force):
     model = driven(CASE_1, force, CASE_1.drive.contact_ratio)
-    critical = report.critical_thickness(model, RANGE).critical.thickness_ratio
+    critical = report.thickness_verdict(model, RANGE).critical.thickness_ratio
     for factor, stable in ((1.004, True), (0.996, False)):
         body = replace(model.body, thickness_ratio=factor * critical)
         assert bool(tongues(replace(model, body=body), RANGE)) != stable
@@ -149,7 +149,7 @@ def test_flutter_decides_the_thickness_where_the_force_follows():
     """P_c goes with the fourth power of the thickness: ω³ and one more for the mass that the force moves."""
     narrow = (float(rad_per_s(900.0)), float(rad_per_s(905.0)))
     model = driven(CASE_1, "follower", CASE_1.drive.geometric_contact_ratio)
-    critical = report.critical_thickness(model, narrow).critical
+    critical = report.thickness_verdict(model, narrow).critical
     ratio = values(report.flutter(model, CASE_1.requirements))[RATIO]
     assert critical.thickness_ratio == pytest.approx(0.03 * ratio**-0.25, rel=0.02)
     assert critical.lobe.label.startswith("mean")
@@ -158,11 +158,11 @@ def test_flutter_decides_the_thickness_where_the_force_follows():
 def test_no_critical_thickness_is_told_with_the_reason_in_rpm():
     narrow = (float(rad_per_s(600.0)), float(rad_per_s(601.0)))
     # 0.001 of the thickness up or down: stable there.
-    verdict = report.critical_thickness(CASE_1.transverse, narrow, widest=1.001)
+    verdict = report.thickness_verdict(CASE_1.transverse, narrow, widest=1.001)
     assert verdict.critical is None
     assert verdict.reason == "stable down to h/a = 0.02997"
     inside = (FOUND[0].lower, FOUND[0].upper)
-    verdict = report.critical_thickness(CASE_1.transverse, inside, widest=1.001)
+    verdict = report.thickness_verdict(CASE_1.transverse, inside, widest=1.001)
     assert verdict.critical is None
     assert "still unstable at h/a = 0.03003, at 5" in verdict.reason
     assert verdict.reason.endswith("rpm")

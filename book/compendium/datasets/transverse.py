@@ -393,7 +393,7 @@ def convergence(
     )
 
 
-def unstable_intervals(growth: xr.DataArray) -> list[tuple[float, float]]:
+def unstable_runs(growth: xr.DataArray) -> list[tuple[float, float]]:
     """Intervals of speed in which a line of growth rates is positive.
 
     Parameters

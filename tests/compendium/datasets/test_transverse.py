@@ -90,9 +90,9 @@ def test_share_and_intervals_of_known_growth():
     growth = xr.DataArray(
         [1.0, -1.0, -1.0, 1.0, 3.0, -1.0], dims="speed_rpm", coords={"speed_rpm": np.arange(6.0)}
     )
-    assert arrays.unstable_intervals(growth) == [(0.0, 0.5), (2.5, 4.75)]
+    assert arrays.unstable_runs(growth) == [(0.0, 0.5), (2.5, 4.75)]
     assert arrays.unstable_share(xr.Dataset({"growth_rate": growth})) == 0.5
-    assert arrays.unstable_intervals(-abs(growth)) == []
+    assert arrays.unstable_runs(-abs(growth)) == []
 
 
 def test_convergence_starts_from_the_model_itself(line, tmp_path):
