@@ -238,8 +238,8 @@ class DrivingForce:
     Examples
     --------
     >>> from facegear.geometry.drive import Drive
-    >>> DrivingForce(power=447.42e3, pinion_speed=523.6).newtons(Drive(26, 130, 3.175e-3))
-    20703.0
+    >>> round(DrivingForce(power=447.42e3, pinion_speed=523.6).newtons(Drive(26, 130, 3.175e-3)))
+    20703
     """
 
     power: float = field(metadata=designed("power of each pinion"))

@@ -15,8 +15,8 @@ def tongues(lower, upper, labels):
     )
 
 
-NONE = tongues([], ([], []))
-TWO = tongues([200.0, 600.0], ([220.0, 700.0], ["(1+1)/1", "mean 2"]))
+NONE = tongues([], [], [])
+TWO = tongues([200.0, 600.0], [220.0, 700.0], ["(1+1)/1", "mean 2"])
 SPEEDS = np.linspace(100.0, 1000.0, 10)
 
 
@@ -74,7 +74,7 @@ def test_strips_are_red_where_it_is_unstable():
 
 
 def test_a_tongue_too_narrow_to_see_is_a_line_wide():
-    (ax,) = draw.speed_strips({"one": tongues([500.0], ([500.001], ["(1+1)/1"]))}, (100.0, 1000.0)).axes
+    (ax,) = draw.speed_strips({"one": tongues([500.0], [500.001], ["(1+1)/1"])}, (100.0, 1000.0)).axes
     assert ax.patches[1].get_width() == pytest.approx(1.8)
 
 

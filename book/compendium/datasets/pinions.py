@@ -241,7 +241,7 @@ def traced(
         As :func:`compendium.datasets.transverse.tongue_sections`.
     """
     low, high = (float(rad_per_s(speed)) for speed in speeds_rpm)
-    found = in_processes(tongues, [(model, low, high) for model in models.values()], jobs)
+    found = in_processes(tongues, [(model, (low, high)) for model in models.values()], jobs)
     first = next(iter(models.values()))
     return tongue_table(
         found, list(models), f"{describe(first)}, from {speeds_rpm[0]:g} to {speeds_rpm[1]:g} rpm"

@@ -74,7 +74,8 @@ def test_variants_differ_where_they_say():
     assert long.pinion_tip_radius == DRIVE.shaper_tip_radius
     assert long.outer_radius == DRIVE.outer_radius
     # (3-22) with one pair at a time: from R2 to R1.
-    skew = design_arrays._shape_at(MODEL.body, 1.0 + 1e-9, "skew line")
+    line = found["skew line"]
+    (skew,) = replace(line, contact=replace(line.contact, contact_ratio=1.0)).shapes
     radii = DRIVE.outer_radius + (DRIVE.inner_radius - DRIVE.outer_radius) * x
     assert skew(x) == pytest.approx(shape_vector(MODEL.body, radii, 0.0), rel=1e-6, abs=1e-9)
 

@@ -92,10 +92,10 @@ def test_maps_hold_growth_rates_of_single_cells(tmp_path):
     data = power_arrays.power_maps(MODEL, powers, speeds, heights, jobs=1)
     check_round_trip(data, tmp_path)
     for power in powers:
-        one = replace_parameter(replace(MODEL, power=power), "stiffness", 1.5)
+        one = replace_parameter(replace_parameter(MODEL, "power", power), "stiffness", 1.5)
         cell = float(data["growth_rate"].sel(power=power, stiffness=1.5, speed_rpm=700.0))
         assert cell == pytest.approx(growth_rate(one.system(float(rad_per_s(700.0)))), abs=1e-4)
-    loaded = replace(MODEL, power=powers[1])
+    loaded = replace_parameter(MODEL, "power", powers[1])
     mean = power_arrays.mean_growth_map(loaded, speeds, heights)
     check_round_trip(mean, tmp_path)
     one = replace_parameter(loaded, "stiffness", 0.5).system(float(rad_per_s(900.0)))
