@@ -17,6 +17,7 @@ from typing import Any, TypeVar
 from facegear.design.body import Requirements
 from facegear.drives.drive_keys import LONGEST_TEXT, MOST_PINIONS, NAME, SECTIONS, WIDEST_SPEED_RATIO, Key
 from facegear.geometry.drive import Drive
+from facegear.geometry.phases import touching_angle
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
 from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
@@ -31,8 +32,6 @@ T = TypeVar("T")
 _FACTORS = (1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9)
 
 _INCH = 25.4e-3
-# Smallest angle between two pinions [rad].
-_CLOSEST = 1e-5
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*", re.ASCII)
 _WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+([eE][-+]?\d+)?)\s*[^\d\s.,:eE-].*", re.ASCII)
 
@@ -294,7 +293,7 @@ def _built(found: _Found) -> DriveFile:
     drive = _by_model(found, "gears", lambda: Drive(**values["gears"]))
     material = _by_model(found, "material", lambda: Material(**values["material"]))
     _check_bore(drive, values["body"]["bore_radius"])
-    _check_angles(values["pinions"]["angles"])
+    _check_angles(drive, values["pinions"]["angles"])
     body = _by_model(found, "body", lambda: Body(drive, material=material, **values["body"]))
     pinions = dict(values["pinions"])
     angles, clock = pinions.pop("angles"), pinions.pop("contact_ratio")
@@ -332,13 +331,15 @@ def _check_bore(drive: Drive, bore_radius: float) -> None:
         )
 
 
-def _check_angles(angles: Sequence[float]) -> None:
-    """Check that no two pinions sit in the same place, in the file's unit."""
+def _check_angles(drive: Drive, angles: Sequence[float]) -> None:
+    """Check that no two pinions are in each other's way, in the file's unit."""
+    least = touching_angle(drive)
     for i, angle in enumerate(angles):
         for j in range(i):
-            if abs(math.remainder(angle - angles[j], 2 * math.pi)) < _CLOSEST:
+            if abs(math.remainder(angle - angles[j], 2 * math.pi)) < least:
                 raise ValueError(
-                    f"pinions.angles_deg[{i}] must differ from the other angles by more than full turns, got "
+                    f"pinions.angles_deg[{i}] must differ from the other angles, full turns apart, by at least "
+                    f"{math.degrees(least):.4g}°, where the tips of these pinions touch, got "
                     f"{math.degrees(angle):.6g}° beside {math.degrees(angles[j]):.6g}°"
                 )
 

@@ -224,7 +224,7 @@ _PINIONS = Section(
         _ratio("mass", "$\\tau$, pinion mass over that of a solid cylinder (4-19)", "kg"),
         Key(
             "angles_deg",
-            "$\\theta_c$ of each pinion, all different",
+            "$\\theta_c$ of each pinion, so far apart that no two touch",
             "numbers",
             "°",
             -360.0,

@@ -1,5 +1,6 @@
 """Phases between the meshes of several pinions, from the angles between them (5-1 to 5-4)."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -61,3 +62,24 @@ def phase_split(drive: Drive, pinion_angles: ArrayLike) -> PhaseSplit:
     phase = np.where(whole, 0.0, pitches - teeth)
     positioning = teeth * drive.angular_pitch
     return PhaseSplit(teeth.astype(np.int64), positioning, phase * drive.angular_pitch, phase)
+
+
+def touching_angle(drive: Drive) -> float:
+    """Total angle between two pinions at which the tip circles at their inner ends touch [rad].
+
+    A pinion touches its neighbour where it touches the plane half-way between them, which holds the gear's axis. Seen
+    from there, a point of the tip circle r_a lies at the angle whose tangent is r_a cos u/(R1 − r_a |cos γ| sin u) off
+    the pinion's own axis, u running round the circle: at most at that with the tangent r_a/√(R1² − (r_a cos γ)²).
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Examples
+    --------
+    >>> round(math.degrees(touching_angle(Drive(26, 130, 3.175e-3))), 1)
+    26.5
+    """
+    tip = drive.pinion_tip_radius
+    reach = math.sqrt(drive.inner_radius**2 - (tip * math.cos(drive.shaft_angle)) ** 2)
+    return 2 * math.atan2(tip, reach)

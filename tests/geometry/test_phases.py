@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.phases import phase_split
+from facegear.geometry.phases import phase_split, touching_angle
 
 
 def test_printed_positions_of_pinions_are_whole_teeth():
@@ -35,3 +35,20 @@ def test_phase_split_is_5_1_and_5_2():
 def test_bad_angles_are_refused():
     with pytest.raises(ValueError, match="pinion_angles must be finite"):
         phase_split(Drive(26, 130, 3.175e-3), math.inf)
+
+
+@pytest.mark.parametrize("shaft_angle_deg", [70.0, 90.0, 105.0])
+def test_pinions_touch_where_one_reaches_the_plane_half_way(shaft_angle_deg):
+    gamma = np.radians(shaft_angle_deg)
+    drive = Drive(31, 155, 3.175e-3, shaft_angle=gamma)
+    round_the_tip = np.linspace(0, 2 * np.pi, 100_001)
+    # Axis of the pinion in the plane of x and z, z being the gear's; its tip circle at the inner end of the teeth.
+    axis, across = np.array([np.sin(gamma), 0, np.cos(gamma)]), np.array([np.cos(gamma), 0, -np.sin(gamma)])
+    centre = axis * drive.inner_radius / np.sin(gamma)
+    circle = (
+        centre[:, None]
+        + drive.pinion_tip_radius * np.cos(round_the_tip) * np.array([[0.0], [1.0], [0.0]])
+        + drive.pinion_tip_radius * np.sin(round_the_tip) * across[:, None]
+    )
+    widest = np.degrees(np.arctan2(circle[1], circle[0]).max())
+    assert touching_angle(drive) == pytest.approx(2 * np.radians(widest), abs=1e-8)

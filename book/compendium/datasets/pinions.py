@@ -48,24 +48,6 @@ def with_teeth(model: Transverse, pinion_teeth: int) -> Transverse:
     return replace(model, body=replace(model.body, drive=resized))
 
 
-def touching_angle(drive: Drive) -> float:
-    """Total angle at which the tip circles at the inner ends of two pinions touch [°].
-
-    A pinion touches its neighbour where it touches the plane half-way between them, which holds the gear's axis. Seen
-    from there, a point of the tip circle r_a lies at the angle whose tangent is r_a cos u/(R1 − r_a |cos γ| sin u) off
-    the pinion's own axis, u running round the circle: at most at that with the tangent r_a/√(R1² − (r_a cos γ)²).
-
-    Examples
-    --------
-    >>> from facegear import Drive
-    >>> round(touching_angle(Drive(26, 130, 3.175e-3)), 1)
-    26.5
-    """
-    tip = drive.pinion_tip_radius
-    reach = math.sqrt(drive.inner_radius**2 - (tip * math.cos(drive.shaft_angle)) ** 2)
-    return math.degrees(2 * math.atan2(tip, reach))
-
-
 def phase_relation(drive: Drive, highest_deg: float, samples: int) -> xr.Dataset:
     """Phase between two pinions against the total angle (Fig. 5.3).
 

@@ -11,7 +11,6 @@ from compendium.plotting import cancellation as charts
 from compendium.plotting import pinions as draw
 from facegear.design.cancellation import Wave, WavePair
 from facegear.floquet.multipliers import growth_rate
-from facegear.geometry.drive import Drive
 from facegear.mechanics.cases import EXAMPLE_A, EXAMPLE_B
 from facegear.mechanics.contact import Contact
 from facegear.support import labelled
@@ -76,23 +75,6 @@ def test_tooth_counts_find_the_tongues_of_each(tmp_path):
     assert np.isnan(table["lower"].values[0]).all()
     # A printed statement: stable there, whatever the traced borders are of the other.
     assert "(c) 180" in texts(draw.tooth_counts({"(c) 180": table}))
-
-
-@pytest.mark.parametrize("shaft_angle_deg", [70.0, 90.0, 105.0])
-def test_pinions_touch_where_one_reaches_the_plane_half_way(shaft_angle_deg):
-    gamma = np.radians(shaft_angle_deg)
-    drive = Drive(31, 155, 3.175e-3, shaft_angle=gamma)
-    round_the_tip = np.linspace(0, 2 * np.pi, 100_001)
-    # Axis of the pinion in the plane of x and z, z being the gear's; its tip circle at the inner end of the teeth.
-    axis, across = np.array([np.sin(gamma), 0, np.cos(gamma)]), np.array([np.cos(gamma), 0, -np.sin(gamma)])
-    centre = axis * drive.inner_radius / np.sin(gamma)
-    circle = (
-        centre[:, None]
-        + drive.pinion_tip_radius * np.cos(round_the_tip) * np.array([[0.0], [1.0], [0.0]])
-        + drive.pinion_tip_radius * np.sin(round_the_tip) * across[:, None]
-    )
-    widest = np.degrees(np.arctan2(circle[1], circle[0]).max())
-    assert arrays.touching_angle(drive) == pytest.approx(2 * widest, abs=1e-6)
 
 
 def test_small_arrays_survive_their_files_and_are_drawn(chart, tongues, tmp_path):
