@@ -29,7 +29,8 @@ chapter: environment ## execute and check one notebook: make chapter NAME=03_geo
 	@$(PYTHON) tools/build.py 'notebook:$(NAME)' && echo 'Executed: build/executed/$(NAME).ipynb'
 
 drive: environment ## report on a drive of your own: make drive FILE=my_drive.yaml
-	@test -f '$(FILE)' || { echo 'Say which file, for example: make drive FILE=data/drives/case_2.yaml'; exit 2; }
+	@test -n '$(FILE)' || { echo 'Say which file, for example: make drive FILE=data/drives/case_2.yaml'; exit 2; }
+	@test -f '$(FILE)' || { echo 'There is no file $(FILE)'; exit 2; }
 	@$(PYTHON) tools/run_drive.py '$(FILE)'
 
 test: environment ## run the tests (a minute or so)

@@ -86,7 +86,7 @@ def tongues(
     *,
     method: Method | None = None,
     threshold: float = 1e-8,
-    hints: Sequence[float] = (),
+    hints: ArrayLike = (),
     progress: bool | None = None,
 ) -> tuple[Tongue, ...]:
     """All intervals of speed in which a model is unstable.
@@ -102,7 +102,7 @@ def tongues(
     threshold : float
         Growth in a period, max|λ| − 1, from which a speed counts as unstable [-]. Damping keeps stable multipliers
         clearly inside the unit circle; without damping they lie on it, and rounding alone must not look like growth.
-    hints : sequence of float
+    hints : array_like
         Further speeds [rad/s] around which to look.
     progress : bool, optional
         Show how many transition matrices have been looked at, and before that about how long it will take
@@ -123,7 +123,9 @@ def tongues(
     """
     low, high = ascending("speeds", speeds, "rad/s")
     threshold = within("threshold", threshold, 1e-12, 1e-2)
-    hints = finite_array("hints", hints).tolist() if len(hints) else []
+    further = finite_array("hints", hints, "rad/s")
+    if further.ndim != 1:
+        raise ValueError(f"hints must list speeds in rad/s, got {hints!r}")
     if threshold < _DRIFT:
         _refuse_rigid_motion(model.system(high))
     from tqdm.auto import tqdm
@@ -139,7 +141,7 @@ def tongues(
                 f"threshold of {threshold:.2g}: give a larger one, or for strong dampers a method such as "
                 "facegear.floquet.radau.Radau"
             )
-        scan = scan_of(curve.live, threshold, hints)
+        scan = scan_of(curve.live, threshold, further.tolist())
     return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
 
 

@@ -357,6 +357,8 @@ def test_other_arguments_are_checked():
         tongues(mathieu(0.1), (90.0, 110.0), threshold=0.0)
     with pytest.raises(ValueError, match="hints must be finite"):
         tongues(mathieu(0.1), (90.0, 110.0), hints=[np.inf])
+    with pytest.raises(ValueError, match=r"hints must list speeds in rad/s, got 61\.0"):
+        tongues(mathieu(0.1), (90.0, 110.0), hints=61.0)
     with pytest.raises(ValueError, match="values must list"):
         borders(mathieu(0.1), "damping", [], (90.0, 110.0), jobs=1)
     with pytest.raises(ValueError, match=r"parameter must be one of .*damping"):
