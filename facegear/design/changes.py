@@ -184,11 +184,15 @@ def _slopes(
     model: Any, change: Change, found: Sequence[Tongue], speeds: tuple[float, float]
 ) -> tuple[float, float]:
     """Differentiate the unstable width [rad/s] and the largest growth rate [1/s] by the relative change."""
-    more, less = change.apply(model, _STEP), change.apply(model, -_STEP)
+    sides = [
+        (step, changed) for step in (_STEP, -_STEP) if (changed := _tried(model, change, step)) is not None
+    ]
+    if len(sides) == 1:  # the value stands at the end of its range
+        sides.append((0.0, model))
+    (above, more), (below, less) = sides
 
     def by_change(speed: float) -> float:
-        ends = (growth_rate(other.system(speed)) for other in (more, less))
-        return (next(ends) - next(ends)) / (2 * _STEP)
+        return (growth_rate(more.system(speed)) - growth_rate(less.system(speed))) / (above - below)
 
     def by_speed(speed: float) -> float:
         step = _STEP * speed
@@ -204,11 +208,18 @@ def _slopes(
     return width, by_change(strongest.peak)
 
 
+def _tried(model: Any, change: Change, size: float) -> Any:
+    """Return the changed model, or None where that leaves the range in which the model is valid."""
+    try:
+        return change.apply(model, size)
+    except ValueError:
+        return None
+
+
 def _after(model: Any, change: Change, slope: float, speeds: tuple[float, float]) -> tuple[float, float]:
     """Unstable width [rad/s] and largest growth rate [1/s] after a change in the better direction."""
-    try:
-        changed = change.apply(model, -math.copysign(FOLLOWED, slope))
-    except ValueError:  # out of the range that the model is valid in
+    changed = _tried(model, change, -math.copysign(FOLLOWED, slope))
+    if changed is None:
         return math.nan, math.nan
     found = tongues(changed, speeds)
     return unstable_width(found), max((tongue.growth_rate for tongue in found), default=0.0)

@@ -13,7 +13,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from facegear.floquet.labels import combination
-from facegear.floquet.models import Coordinate, Model
+from facegear.floquet.models import Coordinate, Model, require_model
 from facegear.floquet.multipliers import transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.tracing import Tongue, tongues
@@ -89,6 +89,7 @@ def cell_detail(model: Model, speed: float) -> CellDetail:
     TypeError, ValueError
         If `speed` is not a number greater than 0.
     """
+    require_model(model)
     speed = positive("speed", speed, "rad/s")
     system = model.system(speed)
     values, vectors = np.linalg.eig(transition_matrix(system))

@@ -16,7 +16,7 @@ from typing import Any, Protocol, TypeVar, get_args, get_type_hints
 
 from numpy.typing import ArrayLike
 
-from facegear.floquet.periodic import PeriodicSystem, without_rigid_motion
+from facegear.floquet.periodic import PeriodicSystem, named, without_rigid_motion
 from facegear.support.types import FloatArray
 
 
@@ -99,6 +99,20 @@ class WithoutRigidMotion:
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of what is left, at a constant speed [rad/s]."""
         return without_rigid_motion(self.model.system(speed))
+
+
+def require_model(model: object) -> None:
+    """Refuse what is no model, such as a system at one speed or a part of a model.
+
+    Raises
+    ------
+    TypeError
+        Saying what it is.
+    """
+    if isinstance(model, type) or not callable(getattr(model, "system", None)):
+        raise TypeError(
+            f"model must have a method system(speed), as fg.Transverse(body, load) has, got {named(model)}"
+        )
 
 
 def parameter_names(model: object) -> tuple[str, ...]:
@@ -222,7 +236,8 @@ def replace_at(part: Any, path: tuple[str, ...], value: Any) -> Any:
     name, rest = path[0], path[1:]
     if rest:
         return dataclasses.replace(part, **{name: replace_at(getattr(part, name), rest, value)})
-    if _declared(part).get(name) is int and float(value).is_integer():
+    # Text and booleans are left to the part's own check, which names them.
+    if _declared(part).get(name) is int and _is_number(value) and float(value).is_integer():
         return dataclasses.replace(part, **{name: int(value)})
     return dataclasses.replace(part, **{name: value})
 

@@ -326,6 +326,24 @@ class PeriodicSystem:
         return replace(self, loads=loads)
 
 
+def require_system(system: object) -> None:
+    """Refuse what is no system at one speed, such as a model.
+
+    Raises
+    ------
+    TypeError
+        Saying what it is, and for a model how to get its system.
+    """
+    if not isinstance(system, PeriodicSystem):
+        hint = "; its system at a speed is model.system(speed)" if hasattr(system, "system") else ""
+        raise TypeError(f"system must be a PeriodicSystem, got {named(system)}{hint}")
+
+
+def named(value: object) -> str:
+    """Say what a value is, for a message: "a Body", or "the class Body"."""
+    return f"the class {value.__name__}" if isinstance(value, type) else f"a {type(value).__name__}"
+
+
 def rigid_motions(system: PeriodicSystem) -> FloatArray:
     """Rigid-body motions of a system: displacements r that meet neither spring nor damper nor load.
 

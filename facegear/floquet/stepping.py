@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from facegear.floquet.collocation import chain
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem, require_system
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -97,6 +97,8 @@ class Family:
     def __init__(self, systems: Sequence[PeriodicSystem]) -> None:
         if not systems:
             raise ValueError("systems must hold at least one PeriodicSystem; got none")
+        for system in systems:
+            require_system(system)
         first = systems[0]
         for system in systems[1:]:
             if (

@@ -24,7 +24,7 @@ import xarray
 from numpy.typing import ArrayLike
 
 from facegear.floquet.columns import column_spectral_radii, interpolated_spectral_radii
-from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at
+from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at, require_model
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import (
     Method,
@@ -111,6 +111,7 @@ def stability_map(
     >>> chart.dims
     ('stiffness', 'speed')
     """
+    require_model(model)
     speeds = checked_speeds(speeds)
     values = _checked_values(values)
     name = parameter_path(model, parameter)[-1]
@@ -120,7 +121,7 @@ def stability_map(
     tasks = (
         _rows(sweep, speeds)
         if _goes_along_speed(sweep, speeds, loads, first)
-        else _chunks(sweep, speeds, loads)
+        else _chunks(sweep, speeds, loads, first)
     )
     radii = np.empty((values.size, speeds.size))
     # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
@@ -284,6 +285,7 @@ class _ModelChunk:
     place: Place
     sweep: _Sweep
     speeds: FloatArray
+    alone: bool = False
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on: of the model's code, what it makes of the first, middle and last value."""
@@ -301,7 +303,8 @@ class _ModelChunk:
 
     def compute(self) -> FloatArray:
         """Spectral radii, shape (V, speeds)."""
-        return np.stack([_model_column(self.sweep, float(speed)) for speed in self.speeds], axis=1)
+        columns = [_model_column(self.sweep, speed, self.alone) for speed in self.speeds.tolist()]
+        return np.stack(columns, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,13 +346,16 @@ def _rows(sweep: _Sweep, speeds: FloatArray) -> list[_Task]:
     ]
 
 
-def _chunks(sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None) -> list[_Task]:
+def _chunks(
+    sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None, first: Sequence[PeriodicSystem]
+) -> list[_Task]:
     """Prepare neighbouring columns for the fastest route that suits them.
 
     Load parameters are those of all values at the first speed; at the others the first, middle and last value show
     whether they, or anything else, depend on both speed and value.
     """
     tasks: list[_Task] = []
+    alone = _cell_by_cell(sweep, first)
     for start in range(0, speeds.size, _CHUNK):
         part = slice(start, start + _CHUNK)
         place = (slice(None), part)
@@ -363,7 +369,7 @@ def _chunks(sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None) -> list
                 tasks.append(_LoadChunk(place, tuple(row[0] for row in probed), loads, sweep.method))
                 continue
         # A fresh copy: models that have been built need not travel to other processes.
-        tasks.append(_ModelChunk(place, replace(sweep), speeds[part]))
+        tasks.append(_ModelChunk(place, replace(sweep), speeds[part], alone))
     return tasks
 
 
@@ -383,10 +389,10 @@ def _or_empty(loads: FloatArray | None) -> FloatArray:
     return np.empty(0) if loads is None else loads
 
 
-def _model_column(sweep: _Sweep, speed: float) -> FloatArray:
-    """Spectral radii along one column, shape (V,)."""
+def _model_column(sweep: _Sweep, speed: float, alone: bool) -> FloatArray:
+    """Spectral radii along one column, shape (V,); `alone` if values are known to share no breakpoints."""
     systems = [sweep.models[probe].system(speed) for probe in sweep.probes]
-    if _cell_by_cell(sweep, systems):
+    if alone or _cell_by_cell(sweep, systems):
         return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
     # Coordinates in which entries are of comparable size, the same for the whole column.
     scale = Family(systems[:1]).scale

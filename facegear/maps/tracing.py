@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from facegear.floquet.labels import Combination, Kind, combination
-from facegear.floquet.models import Model, parameter_path, replace_parameter
+from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, rigid_motions
@@ -121,6 +121,7 @@ def tongues(
     ArithmeticError
         If transition matrices do not vary smoothly with speed, or are not known well enough for the threshold.
     """
+    require_model(model)
     low, high = ascending("speeds", speeds, "rad/s")
     threshold = within("threshold", threshold, 1e-12, 1e-2)
     further = finite_array("hints", hints, "rad/s")

@@ -8,6 +8,7 @@ shape vectors, and pinions at other angles into rotated and shifted ones.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,7 +20,7 @@ from facegear.floquet.periodic import Rate
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, SkewLine, TimedPairs, checked_contact_ratio
-from facegear.support.parameters import finite, keep, one_of
+from facegear.support.parameters import keep, one_of, within
 from facegear.support.types import FloatArray
 
 Travel = Literal["printed", "with_disk"]
@@ -77,7 +78,8 @@ class Contact:
         one_of("rate", self.rate, ("frozen", "total"))
         one_of("travel", self.travel, ("printed", "with_disk"))
         if self.contact_ratio is not None:
-            keep(self, contact_ratio=finite("contact_ratio", self.contact_ratio))
+            hint = "below 1 there are instants without any tooth in mesh"
+            keep(self, contact_ratio=within("contact_ratio", self.contact_ratio, 1.0, math.inf, hint=hint))
 
     @property
     def sense(self) -> float:
@@ -99,11 +101,20 @@ class Contact:
 
         Raises
         ------
-        ValueError
-            Saying why: the contact ratio is out of range, the path has no lengths to share by, or total rate would
-            follow a point without a finite speed.
+        TypeError, ValueError
+            Saying why: the path is none, the contact ratio is out of range, the path has no lengths to share by, or
+            total rate would follow a point without a finite speed.
         """
-        path = self.path(drive, self.ratio(drive))
+        ratio = self.ratio(drive)
+        try:
+            path = self.path(drive, ratio)
+        except TypeError:
+            path = None
+        if not isinstance(path, TimedPairs):
+            raise TypeError(
+                "path must be a class of contact points (a TimedPairs, such as ContactPath) or a function of drive and "
+                f"contact ratio that returns one, got {self.path!r}"
+            )
         if self.sharing == "centroid" and not path.has_lengths:
             raise ValueError(
                 f'sharing must be "mean" or "each" for {type(path).__name__}, which has no contact lines to weight by, '

@@ -8,7 +8,9 @@ import pytest
 
 from facegear.design.changes import effects_of_changes, possible_changes, unstable_width
 from facegear.drives.drive_file import read_drive_file
-from facegear.maps.tracing import tongues
+from facegear.floquet.labels import Combination
+from facegear.floquet.multipliers import growth_rate
+from facegear.maps.tracing import Tongue, tongues
 from facegear.support.parameters import rad_per_s, rpm
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
@@ -107,3 +109,14 @@ def test_a_change_out_of_range_is_left_out():
 def test_number_followed_is_checked():
     with pytest.raises(ValueError, match="followed must be at least 0, got -1"):
         effects_of_changes(CASE_1, (), RANGE, "", followed=-1)
+
+
+def test_a_value_at_the_end_of_its_range_is_differentiated_to_one_side():
+    """The largest damping that is valid: the ranking holds that parameter as well, with the slope from below."""
+    model = replace(CASE_1, load=replace(CASE_1.load, damping=0.01))
+    tongue = Tongue(60.0, 61.0, 60.5, 1.0, Combination(1, 1, "sum", 1))
+    table = effects_of_changes(model, [tongue], (50.0, 70.0), "at the limit", followed=0)
+    place = table["change_name"].values.tolist().index("bearing damping")
+    lower = replace(model, load=replace(model.load, damping=0.01 * (1 - 1e-4)))
+    ends = [growth_rate(each.system(60.5)) for each in (lower, model)]
+    assert float(table["growth_slope"][place]) == pytest.approx((ends[1] - ends[0]) / 1e-4 / 100, rel=1e-6)

@@ -12,6 +12,7 @@ from facegear.floquet.models import (
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.geometry.drive import Drive
+from facegear.mechanics.cases import FIGURES
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad
@@ -101,3 +102,10 @@ def test_unknown_parameters_are_answered_with_those_that_exist():
 def test_the_model_checks_the_value():
     with pytest.raises(ValueError, match="stiffness must be 0 or greater"):
         replace_parameter(TRANSVERSE, "stiffness", -1.0)
+
+
+@pytest.mark.parametrize("wrong", ["27", True, None, [27]], ids=repr)
+def test_what_is_no_number_is_left_to_the_check_of_the_part(wrong):
+    model = FIGURES["4.4a"].model()
+    with pytest.raises(TypeError, match="pinion_teeth must be an integer"):
+        replace_parameter(model, "pinion_teeth", wrong)

@@ -27,6 +27,7 @@ from facegear.floquet.multipliers import (
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.stepping import exponentials
+from facegear.mechanics.cases import FIGURES
 
 ONE = PiecewiseChebyshev.constant([1.0])
 COSINE = PiecewiseChebyshev.fit(lambda x, _: np.cos(2.0 * np.pi * x), [0.0])
@@ -505,3 +506,12 @@ def test_growth_beyond_double_precision_is_an_error():
     system = PeriodicSystem([[1.0]], [[-3000.0]], [[1.0]], (), 1.0)
     with pytest.raises(ArithmeticError, match="not finite"):
         multipliers(system, Magnus(4))
+
+
+def test_a_model_is_no_system():
+    model = FIGURES["4.4a"].model()
+    for ask in (multipliers, growth_rate, transition_matrix, error_estimate):
+        with pytest.raises(
+            TypeError, match=r"system must be a PeriodicSystem, got a Transverse; .*model\.system"
+        ):
+            ask(model)

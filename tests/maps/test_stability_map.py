@@ -19,7 +19,9 @@ from facegear.geometry.drive import Drive
 from facegear.maps import parallel
 from facegear.maps import stability_map as maps
 from facegear.maps.stability_map import stability_map
+from facegear.mechanics import cases
 from facegear.mechanics.cases import FIGURES
+from facegear.mechanics.classical import GearPair
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
@@ -460,3 +462,18 @@ def test_the_progress_bar_is_shown_when_asked_for(capsys):
     assert capsys.readouterr().err == ""
     stability_map(MATHIEU, SPEEDS, "modulation", VALUES, jobs=1, progress=True)
     assert "stability map" in capsys.readouterr().err
+
+
+def test_values_that_share_breakpoints_with_the_probes_only():
+    """Contact ratios 1, 2 and 3 break the period alike, 1.5 and 2.5 do not: no series may run through all."""
+    model, ratios = GearPair(1.5, 0.5), np.linspace(1.0, 3.0, 5)
+    chart = stability_map(model, [1.0, 2.0], "contact_ratio", ratios, jobs=1, progress=False)
+    for ratio, row in zip(ratios.tolist(), chart.values, strict=True):
+        anew = [growth_rate(GearPair(ratio, 0.5).system(speed)) for speed in (1.0, 2.0)]
+        np.testing.assert_allclose(row, anew, atol=1e-9)
+
+
+@pytest.mark.parametrize("wrong", [3, cases.CASE_1, Transverse, cases.CASE_1.drive], ids=range(4))
+def test_what_is_no_model_is_named(wrong):
+    with pytest.raises(TypeError, match=r"model must have a method system\(speed\).*got (a|the class) "):
+        stability_map(wrong, [50.0], "stiffness", [1.0])

@@ -101,6 +101,11 @@ def test_default_ratio_is_that_of_the_drive_and_a_given_one_stays():
         ({"travel": "against"}, ValueError, "travel must be"),
         ({"contact_ratio": "1.5"}, TypeError, "contact_ratio must be a real number"),
         ({"contact_ratio": float("nan")}, ValueError, "contact_ratio must be finite"),
+        (
+            {"contact_ratio": 0.9},
+            ValueError,
+            r"contact_ratio must lie in .*\(below 1 there are instants without",
+        ),
     ],
 )
 def test_bad_input(change, error, message):
@@ -111,7 +116,7 @@ def test_bad_input(change, error, message):
 @pytest.mark.parametrize(
     ("contact", "message"),
     [
-        (Contact(contact_ratio=0.9), "contact_ratio must lie in"),
+        (Contact(contact_ratio=27.0), r"contact_ratio must lie in \[1, 26\]"),
         (Contact(path=SkewLine), 'sharing must be "mean" or "each" for SkewLine'),
         (
             Contact(contact_ratio=1.0, rate="total"),
@@ -122,6 +127,12 @@ def test_bad_input(change, error, message):
 def test_what_does_not_suit_a_drive_is_refused_with_the_reason(contact, message):
     with pytest.raises(ValueError, match=message):
         contact.require(DRIVE)
+
+
+@pytest.mark.parametrize("path", [str, len, Drive, lambda drive, ratio: 3, lambda drive: 3], ids=range(5))
+def test_what_makes_no_contact_points_is_no_path(path):
+    with pytest.raises(TypeError, match="path must be a class of contact points"):
+        Contact(path=path).require(DRIVE)
 
 
 def test_few_teeth_have_no_total_rate_on_their_contact_lines_but_on_the_skew_line():

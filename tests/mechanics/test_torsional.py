@@ -264,7 +264,7 @@ def test_wrong_kinds():
     with pytest.raises(TypeError, match="contact must be a Contact"):
         Torsional(BOX, "circle")
     with pytest.raises(ValueError, match="contact_ratio must lie in"):
-        Torsional(BOX, replace(SKEW_LINE, contact_ratio=0.9))
+        Torsional(BOX, replace(SKEW_LINE, contact_ratio=32.0))
     with pytest.raises(ValueError, match="correction_factor"):
         mesh_stiffness(DRIVE, 0.0)
     with pytest.raises(ValueError, match="speed must be greater than 0"):

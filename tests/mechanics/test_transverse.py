@@ -485,7 +485,12 @@ class TestTransverse:
             ({"body": CASE_ONE.drive}, TypeError, "body must be a Body"),
             ({"load": 1.0}, TypeError, "load must be a MeshLoad"),
             ({"contact": 1.5}, TypeError, "contact must be a Contact"),
-            ({"contact": Contact(contact_ratio=0.9)}, ValueError, "contact_ratio"),
+            ({"contact": Contact(contact_ratio=27.0)}, ValueError, "contact_ratio"),
+            (
+                {"contact": Contact(sharing="mean", rate="total")},
+                ValueError,
+                'sharing must be "centroid" where',
+            ),
             ({"contact": Contact(sharing="each")}, ValueError, "sharing must be"),
             ({"force": 1e3}, TypeError, "force must be a DrivingForce or None"),
             ({"pinion_angles": ()}, ValueError, "pinion_angles"),

@@ -251,7 +251,7 @@ def disk_stiffness(cases: Mapping[str, xr.Dataset]) -> Figure:
     Parameters
     ----------
     cases : mapping of str to xarray.Dataset
-        Title to the arrays of :func:`compendium.datasets.transverse.stiffness_of_disk`.
+        Title to the arrays of :func:`compendium.datasets.disk.stiffness_of_disk`.
     """
     figure, axes = panels(1, len(cases), 3.3)
     names = ("inner end $R_1$", "middle", "outer end $R_2$")
@@ -296,7 +296,7 @@ def centroid_on_two_clocks(data: xr.Dataset, names: Sequence[str]) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`compendium.datasets.transverse.centroid_motion`.
+        From :func:`compendium.datasets.disk.centroid_motion`.
     names : sequence of str
         One a contact ratio.
     """
