@@ -302,6 +302,7 @@ def _built(found: _Found) -> DriveFile:
     transverse = _by_model(
         found, "pinions", lambda: Transverse(body, load, angles, Contact(contact_ratio=ratio))
     )
+    _by_model(found, "body", lambda: transverse.bearing_stiffness)
     requirements = _requirements(found, body)
     torsional = None
     if (gearbox := values["gearbox"]) is not None:

@@ -27,6 +27,7 @@ from facegear.geometry.kinematics import mesh_period
 from facegear.geometry.phases import phase_split
 from facegear.mechanics.contact import CENTROID, Contact
 from facegear.mechanics.disk import (
+    REFERENCE_SPEED,
     disk_coordinates,
     disk_matrices,
     disk_modes,
@@ -181,8 +182,23 @@ class Transverse:
 
     @property
     def bearing_stiffness(self) -> float:
-        """k_b = μ times the reference stiffness of the disk [N/m] (4-17)."""
-        return self.load.stiffness * reference_stiffness(self.body)
+        """k_b = μ times the reference stiffness of the disk [N/m] (4-17).
+
+        Raises
+        ------
+        ValueError
+            If the disk is so soft that its stiffness, averaged up to the reference speed, is not positive.
+        """
+        if self.load.stiffness == 0.0:
+            return 0.0
+        reference = reference_stiffness(self.body)
+        if reference <= 0.0:
+            raise ValueError(
+                "thickness_ratio must be larger, or the material stiffer, for bearings to be measured by the disk's "
+                f"own stiffness (4-17): averaged up to {REFERENCE_SPEED:.4g} rad/s, beyond a critical speed of the disk, "
+                f"that is {reference:.3g} N/m, got {self.body.thickness_ratio!r}"
+            )
+        return self.load.stiffness * reference
 
     @property
     def bearing_damping(self) -> float:

@@ -481,3 +481,10 @@ def test_what_is_valid_gives_systems(case):
                 for load in system.loads:
                     assert np.isfinite(load.shape(np.array([0.0, 0.3, 0.9]))).all()
                 assert np.isfinite(system.stiffness).all()
+
+
+def test_a_body_too_soft_to_measure_bearings_by_is_refused():
+    """Beyond its critical speed the disk's stiffness against a force at rest is negative."""
+    soft = yaml.safe_load(GEARBOX) | {"material": {"youngs_modulus_GPa": 0.11547819846894582}}
+    with pytest.raises(DriveFileError, match="thickness_ratio must be larger, or the material stiffer"):
+        parse_drive(yaml.safe_dump(soft))
