@@ -245,7 +245,7 @@ class Collocation:
 
 
 #: What :func:`with_method` takes where collocation does not apply. It estimates the error before its last
-#: extrapolation: what is left is smaller by a factor of ten at least, see the tests.
+#: extrapolation, which is larger than what is left.
 GENERAL = AdaptiveMagnus(1e-9)
 
 

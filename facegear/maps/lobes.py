@@ -224,11 +224,13 @@ class _Search:
         peak = self.broad_peak(tongue) if flutter else self.sharp_peak(level, tongue)
         # A sharp peak is close to its tip as often as not.
         first, further = (_STEP, 2 * _STEP) if flutter else (0.1 * _STEP, _STEP)
-        low, high = level, level * (1 + first)
+        low, high, top = level, level * (1 + first), self.thickness_range[1]
         while peak(high)[1] > 0.0:
-            if high >= self.thickness_range[1]:
+            if high >= top:
                 raise UnstableTopError(tongue, high)
             low, high = high, high * (1 + further)
+            if flutter:  # whose growth falls slowly: it must not be followed out of the range
+                high = min(high, top)
         tip, speed = critical_value(peak, low, high, xtol=self.tolerance / 4)
         label = tongue.label if flutter else combination(self.model_at(tip).system(speed)).label
         return Lobe(tip, speed, label)
