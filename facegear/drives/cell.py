@@ -102,13 +102,14 @@ def cell_detail(model: Model, speed: float) -> CellDetail:
     if radius - 1.0 > UNSTABLE:
         tongue, searched = _tongue_at(model, speed)
     label = tongue.label if tongue else combination(system).label if radius - 1.0 > UNSTABLE else None
-    deflections = _deflections(model.coordinates, motion)
+    coordinates = model.coordinates
+    deflections = _deflections(coordinates, motion)
     shown = [part.values for part in deflections.values()] or [motion]
     largest = max((complex(part.flat[np.abs(part).argmax()]) for part in shown), key=abs)
-    bodies = [k for k, coordinate in enumerate(model.coordinates) if coordinate.surface is None]
+    bodies = [k for k, coordinate in enumerate(coordinates) if coordinate.surface is None]
     history = None
     if bodies:
-        names = [model.coordinates[k].name for k in bodies]
+        names = [coordinates[k].name for k in bodies]
         history = _history(system, vectors[:, 0] / largest, complex(values[0]), bodies, names)
     return CellDetail(
         speed=speed,

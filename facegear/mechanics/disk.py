@@ -161,12 +161,15 @@ def unit_shape(
     -------
     ndarray, shape (..., n)
     """
-    x, angle = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(angle, dtype=float))
+    x, angle = np.asarray(x, dtype=float), np.asarray(angle, dtype=float)
+    shape = np.broadcast_shapes(x.shape, angle.shape)
+    # Bessel functions are dear: they are asked for at each radius, not at each point.
+    radii = x.reshape((1,) * (len(shape) - x.ndim) + x.shape)
     parts = []
     for n, radial in enumerate(modes):
-        value = radial.continued(x, by_radius) * float(n) ** by_angle
+        value = radial.continued(radii, by_radius) * float(n) ** by_angle
         if n == 0:
-            parts.append(value)
+            parts.append(np.broadcast_to(value, (*value.shape[:1], *shape)))
         else:
             # A derivative turns the wave by a quarter.
             turned = n * angle + by_angle * np.pi / 2 if by_angle else n * angle
