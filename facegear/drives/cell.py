@@ -182,12 +182,12 @@ def _history(
     system: PeriodicSystem, state: ComplexArray, critical: complex, chosen: list[int], names: list[str]
 ) -> xr.DataArray:
     """Chosen displacements of the critical motion over some periods: integrated over one, λ times that in the next."""
-    kicks = dict(system.velocity_kicks())
+    jumps = dict(system.state_jumps())
     edges = np.append(system.breakpoints, 1.0)
     instants, motion = [], []
     for start, end in itertools.pairwise(edges):
-        if start in kicks:
-            state = state + np.concatenate([np.zeros(system.size), kicks[start] @ state[: system.size]])
+        if start in jumps:
+            state = jumps[start] @ state
         # The derivative at the end of a piece is that from the left, wherever the integrator asks for it.
         piece = solve_ivp(
             lambda x, y, end=end: system.period * system.state_matrix(x, "left" if x >= end else "right") @ y,

@@ -5,20 +5,20 @@
 `multiplier_curves` the same along a parameter and along speed; `modes` has natural motions, `labels` names what is
 unstable; `modal`, `averaging`, `hsu` are the approximations.
 
-What each method takes, and what it costs. A system whose mass meets jumps of a shape's slope has *kicks*, a load whose
-strength varies has a *weight*; *overdamped* and *rigid* modes do not oscillate; *sensitivities* are the derivatives of
-:mod:`facegear.maps.sensitivity`. Without a name :func:`facegear.floquet.multipliers.with_method` takes `Collocation`,
-and `AdaptiveMagnus` where that does not apply.
+What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
+it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*
+modes do not oscillate; *sensitivities* are the derivatives of :mod:`facegear.maps.sensitivity`. Without a name
+:func:`facegear.floquet.multipliers.with_method` takes `Collocation`, and `AdaptiveMagnus` where that does not apply.
 
 ===============  =====  ==========  =====  =======  =============  =====  ==========================================
-method           kicks  overdamped  rigid  weights  sensitivities  order  cost
+method           jumps  overdamped  rigid  weights  sensitivities  order  cost
 ===============  =====  ==========  =====  =======  =============  =====  ==========================================
 Stepwise         no     yes         yes    yes      yes            1      an exponential of 2n rows a sub-interval
 AlignedStepwise  yes    yes         yes    yes      yes            2      as Stepwise
 Magnus           yes    yes         yes    yes      yes            4      as Stepwise, two evaluations
 AdaptiveMagnus   yes    yes         yes    yes      yes            10     Magnus thrice or more, dear if overdamped
-Collocation      yes    no          no     yes      no             32     16 equations a load and panel, the least
-Radau            no     yes         yes    yes      no             31     16 n equations a panel, best if overdamped
+Collocation      yes    no          yes    yes      no             32     16 equations a load and panel, the least
+Radau            yes    yes         yes    yes      no             31     16 n equations a panel, best if overdamped
 ===============  =====  ==========  =====  =======  =============  =====  ==========================================
 
 The order holds at jumps of A(t) too. That of Stepwise is 2 where there are none; of the last two it is that of the

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.floquet.modes import NaturalMotions
-from facegear.floquet.periodic import ContactLoad, LoadColumn, PeriodicSystem
+from facegear.floquet.periodic import ContactLoad, LoadColumn, PeriodicSystem, weighted_shape
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -38,6 +38,8 @@ PANEL_TOLERANCE = 1e-12
 # A mode that is slower than this part of the fastest is a rigid-body motion, whose frequency is known to the root of
 # rounding only; the modes of a system that is not held must not be taken for oscillations.
 _SLOWEST = 1e-5
+# A spring that holds what hangs on nothing lets it oscillate at this part of the fastest frequency at least.
+_SOFTEST = 0.1
 # Rounds of halving before a system is refused.
 _MOST_HALVINGS = 8
 # Systems share panels if they turn by at least this part of the largest angle among them in a period.
@@ -310,6 +312,73 @@ def mobilities(systems: Sequence[PeriodicSystem]) -> FloatArray:
     return np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
 
 
+@dataclass(frozen=True, eq=False)
+class _Held:
+    """Systems with a spring for each motion that hangs on nothing, and what it takes to undo that.
+
+    A spring ω² M r rᵀM lets the undamped motion r of unit mass oscillate and leaves all others alone. Taken back as
+    one more load, of shape M r and stiffness −ω², it changes nothing in the motion of the whole.
+
+    Attributes
+    ----------
+    systems : sequence of PeriodicSystem
+    modes : FreeModes
+    springs : array, shape (S, extra loads)
+        ω² [1/s²], to be taken off again.
+    """
+
+    systems: Sequence[PeriodicSystem]
+    modes: FreeModes
+    springs: FloatArray
+
+    @classmethod
+    def of(cls, systems: Sequence[PeriodicSystem], stiffest: float, fewest: int) -> _Held:
+        """Hold what needs it, by springs as strong as the loads, whose sum over their mobilities is `stiffest` [1/s²].
+
+        Systems of fewer than `fewest` coordinates are not held.
+
+        Raises
+        ------
+        UnsuitableSystemError
+            If springs are not all that is missing.
+        """
+        none = np.zeros((len(systems), 0))
+        try:
+            return cls(systems, FreeModes.of_all(systems), none)
+        except UnsuitableSystemError:
+            if systems[0].size < fewest:
+                raise
+            # One direction serves all: that of a system with as many such motions as any.
+            count, first = 0, systems[0]
+            for system in systems:
+                slow = int(np.count_nonzero(_undamped(system)[0] <= _SLOWEST**2))
+                count, first = (slow, system) if slow > count else (count, first)
+            if count == 0:
+                raise
+        _, size, turned = _undamped(first)
+        strength = float(np.clip(stiffest, _SOFTEST**2 * size, size)) if size > 0.0 else stiffest
+        if strength == 0.0:
+            strength = 1.0 / max(system.period for system in systems) ** 2
+        # M r = L times a unit vector, M = L Lᵀ.
+        columns = np.linalg.cholesky(first.mass) @ turned[:, :count]
+        extra = tuple(ContactLoad(PiecewiseChebyshev.constant(column)) for column in columns.T)
+        spring = strength * columns @ columns.T
+        held = [
+            replace(system, stiffness=system.stiffness + spring, loads=system.loads + extra)
+            for system in systems
+        ]
+        return cls(held, FreeModes.of_all(held), np.full((len(systems), count), strength))
+
+
+def _undamped(system: PeriodicSystem) -> tuple[FloatArray, float, FloatArray]:
+    """Squares of undamped frequencies over the largest, ascending (n,), that [1/s²], and modes times Lᵀ, M = L Lᵀ."""
+    inverse = np.linalg.inv(np.linalg.cholesky(system.mass))
+    reduced = inverse @ system.stiffness @ inverse.T
+    squares, turned = np.linalg.eigh((reduced + reduced.T) / 2.0)
+    largest = float(np.abs(squares).max())
+    return squares / (largest if largest > 0.0 else 1.0), largest, turned
+
+
 class FreeMotion:
     """A system prepared for many values of its load parameters up to those of `column`, or many systems for one each.
 
@@ -326,6 +395,8 @@ class FreeMotion:
         Largest product of fastest frequency and panel length [rad].
     instants : array
         Fractions of the period that panels end at, besides the breakpoints.
+    fewest_held : int
+        Number of coordinates from which on motions that hang on nothing are held by springs that are taken back.
 
     Raises
     ------
@@ -340,19 +411,24 @@ class FreeMotion:
         nodes: int = DEFAULT_NODES,
         panel_angle: float = DEFAULT_PANEL_ANGLE,
         instants: Sequence[float] = (),
+        fewest_held: int = 1,
     ) -> None:
         self.systems = systems
-        self.modes = FreeModes.of_all(systems)
-        stiffest = (column.stiffness * mobilities(systems)).sum(axis=-1).max()
+        stiffest = float((column.stiffness * mobilities(systems)).sum(axis=-1).max())
+        self._held = _Held.of(systems, stiffest, fewest_held)
+        self.modes = self._held.modes
         periods = np.array([system.period for system in systems])
         frequencies = np.abs(self.modes.eigenvalues).max(axis=-1)
         angle = float((np.hypot(frequencies, np.sqrt(stiffest)) * periods).max())
         ends = merge_breakpoints([systems[0].breakpoints, np.array(instants)])
         self.edges = panel_edges(ends, angle, panel_angle)
-        self.panels = _build(systems, self.modes, nodes, self.edges[:-1], np.diff(self.edges))
+        self.panels = self._build(nodes, self.edges[:-1], np.diff(self.edges))
         known = column.extremes() if len(systems) == 1 else column
         self._known = (known, self._halve_unresolved_panels(known, nodes))
         self.kicks = [self._kick_data(system) for system in systems]
+
+    def _build(self, nodes: int, start: FloatArray, length: FloatArray) -> _Panels:
+        return _build(self._held.systems, self.modes, nodes, start, length)
 
     def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> FloatArray:
         """Halve panels until the contact forces of all initial states are resolved at the given values.
@@ -379,7 +455,7 @@ class FreeMotion:
             middle = (self.edges[:-1] + self.edges[1:]) / 2.0
             self.edges = np.sort(np.concatenate([self.edges, middle[unresolved]]))
             new = np.repeat(unresolved, 1 + unresolved)
-            halves = _build(self.systems, self.modes, nodes, self.edges[:-1][new], np.diff(self.edges)[new])
+            halves = self._build(nodes, self.edges[:-1][new], np.diff(self.edges)[new])
             self.panels = self.panels.halved(unresolved, halves)
             force = _in_place(unresolved, force, self._forces(column, halves), axis=1)
         raise UnsuitableSystemError(
@@ -387,7 +463,7 @@ class FreeMotion:
         )
 
     def _kick_data(self, system: PeriodicSystem) -> list[tuple[int, int, FloatArray, FloatArray]]:
-        """Panel, load, φ and Δφ̇ of each slope jump of a load with total rate."""
+        """Panel, load, w φ and Δφ̇ of each slope jump of a load with total rate."""
         found = []
         for a, load in enumerate(system.loads):
             if load.rate != "total":
@@ -395,7 +471,7 @@ class FreeMotion:
             jumps = load.slope.jumps() / system.period
             for at, jump in zip(load.shape.breakpoints, jumps, strict=True):
                 panel = int(np.argmin(np.abs(self.edges[:-1] - at)))
-                found.append((panel, a, load.shape(at), jump))
+                found.append((panel, a, weighted_shape(load, at), jump))
         return found
 
     def transition_matrices(self, column: LoadColumn) -> FloatArray:
@@ -414,16 +490,18 @@ class FreeMotion:
             )
         return np.concatenate(parts)
 
-    @staticmethod
-    def _forces(column: LoadColumn, panels: _Panels) -> FloatArray:
+    def _forces(self, column: LoadColumn, panels: _Panels) -> FloatArray:
         """Contact forces at the nodes of each panel, for unit modal coordinates at its start, (V, P, N p, 2n)."""
         size = panels.input.shape[-1]
-        repeats = size // max(column.mass.shape[1], 1)
+        springs = np.broadcast_to(self._held.springs, (len(column), self._held.springs.shape[1]))
+        none = np.zeros_like(springs)
         left = np.broadcast_to(np.eye(size), (len(column), *panels.force_on_force.shape[2:])).copy()
         right = np.zeros((len(column), *panels.force_on_state.shape[2:]))
-        for order, values in enumerate((column.stiffness, column.damping, column.mass)):
+        parameters = ((column.stiffness, -springs), (column.damping, none), (column.mass, none))
+        for order, parts in enumerate(parameters):
+            values = np.concatenate(parts, axis=1)
             if values.any():
-                factor = np.tile(values, (1, repeats))[:, None, :, None]
+                factor = np.tile(values, (1, size // values.shape[1]))[:, None, :, None]
                 left += factor * panels.force_on_force[order]
                 right += factor * panels.force_on_state[order]
         return np.asarray(np.linalg.solve(left, right), dtype=float)
@@ -446,9 +524,15 @@ class FreeMotion:
         if not np.array_equal(known.stacked(), column.stacked()):
             forces = self._forces(column, self.panels)
         steps = self.panels.free - self.panels.input @ forces
-        if column.mass.any():
-            for number in range(len(self.systems)):
-                own = slice(None) if len(self.systems) == 1 else slice(number, number + 1)
+        for number, system in enumerate(self.systems):
+            own = slice(None) if len(self.systems) == 1 else slice(number, number + 1)
+            # Right to left: the kicks come first, then the jumps of the same instant, then the panel.
+            for jump in system.jumps:
+                away = np.abs(self.edges[:-1] - jump.fraction)
+                panel = int(np.minimum(away, 1.0 - away).argmin())
+                to_state, to_real = self.modes.state_from_real()[number], self.modes.real_from_state()[number]
+                steps[own, panel] = steps[own, panel] @ (to_real @ jump.matrix @ to_state)
+            if column.mass.any():
                 for panel, matrices in self._kicks(number, column.mass[own]).items():
                     steps[own, panel] = steps[own, panel] @ matrices
         return np.asarray(steps, dtype=float)
@@ -464,7 +548,8 @@ class FreeMotion:
         for panel in sorted({panel for panel, *_ in data}):
             at = self.edges[panel]
             shapes = np.stack([load.shape(at) for load in system.loads])
-            mass = system.mass + np.einsum("va,ai,aj->vij", masses, shapes, shapes)
+            weighted = np.stack([weighted_shape(load, at) for load in system.loads])
+            mass = system.mass + np.einsum("va,ai,aj->vij", masses, weighted, shapes)
             impulse = np.zeros((len(masses), n, n))
             for where, a, shape, jump in data:
                 if where == panel:
@@ -502,7 +587,10 @@ def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) ->
 
 
 def transition_matrices(
-    systems: Sequence[PeriodicSystem], nodes: int = DEFAULT_NODES, panel_angle: float = DEFAULT_PANEL_ANGLE
+    systems: Sequence[PeriodicSystem],
+    nodes: int = DEFAULT_NODES,
+    panel_angle: float = DEFAULT_PANEL_ANGLE,
+    fewest_held: int = 1,
 ) -> FloatArray:
     """Floquet transition matrices of the state (q, q̇), shape (V, 2n, 2n).
 
@@ -514,11 +602,13 @@ def transition_matrices(
         Gauss nodes a panel.
     panel_angle : float
         Largest product of fastest frequency and panel length [rad].
+    fewest_held : int
+        As for :class:`FreeMotion`.
 
     Raises
     ------
     UnsuitableSystemError
-        If the free motion has rigid-body, overdamped or defective modes.
+        If the free motion has overdamped or defective modes, or rigid-body ones in a system that is not held.
     """
     turns = np.array([system.period * np.sqrt(np.abs(system.stiffness).max()) for system in systems])
     loads, size = len(systems[0].loads) * nodes, 2 * systems[0].size
@@ -532,7 +622,7 @@ def transition_matrices(
         order = order[together.size :]
         family = [systems[number] for number in together.tolist()]
         column = LoadColumn.from_stacked(np.concatenate([LoadColumn.of(x).stacked() for x in family]))
-        motion = FreeMotion(family, column, nodes, panel_angle)
+        motion = FreeMotion(family, column, nodes, panel_angle, fewest_held=fewest_held)
         found = motion.transition_matrices(column)
         matrices[together] = motion.modes.state_from_real() @ found @ motion.modes.real_from_state()
     return matrices

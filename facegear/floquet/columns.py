@@ -82,7 +82,10 @@ def _load_matrices(
     """Transition matrices of a system for any part of a column, in one set of coordinates."""
     if isinstance(method, Collocation):
         # What does not depend on the loads is prepared once.
-        return FreeMotion([system], column, method.nodes, method.panel_angle).transition_matrices
+        motion = FreeMotion(
+            [system], column, method.nodes, method.panel_angle, fewest_held=method.fewest_held
+        )
+        return motion.transition_matrices
 
     def matrices(part: LoadColumn) -> FloatArray:
         systems = [

@@ -3,13 +3,15 @@
 Every mesh load of a face-gear drive, transverse or torsional, is felt through one displacement
 u = φ(t)ᵀq and answers with one force, so that all systems of the text have the form
 
-    M q̈ + C q̇ + K q + Σ_i w_i(t) φ_i(t) [ m_i ü_i + c_i u̇_i + k_i u_i ] = 0,    u_i = φ_i(t)ᵀ q
+    M q̈ + C q̇ + K q + Σ_i w_i(t) φ_i(t) [ m_i ü_i + c_i u̇_i + k_i u_i ] = f(t),    u_i = φ_i(t)ᵀ q − e_i(t)
 
-with constant M, C, K at a given speed. Time is measured by the fraction x = t / T0 of the period.
+with constant M, C, K at a given speed. Time is measured by the fraction x = t / T0 of the period. Stability does not
+hang on the forces f and the transmission errors e; :mod:`facegear.floquet.response` has what they cause.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 from typing import Literal
@@ -24,14 +26,25 @@ from facegear.floquet.piecewise import (
     fourier_series,
     merge_breakpoints,
     real_array,
+    wrap,
 )
-from facegear.support.parameters import finite_array, integer_at_least, keep, nonnegative, one_of, positive
+from facegear.support.parameters import (
+    finite_array,
+    integer_at_least,
+    keep,
+    nonnegative,
+    one_of,
+    positive,
+    within,
+)
 from facegear.support.types import FloatArray
 
 Rate = Literal["frozen", "total"]
 
 # Stiffness, damping and loads along a rigid-body motion, over their largest.
 _RIGID = 1e-12
+# Part of the largest slope below which a jump of it is rounding of the fit.
+_ROUNDING_OF_A_FIT = 1e-11
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +63,12 @@ class ContactLoad:
         is made or lost and gives no impulse; a jump of the slope φ̇ gives the mass a kick
         (:meth:`PeriodicSystem.velocity_kicks`).
     weight : PiecewiseChebyshev, optional
-        Scalar periodic factor w of the force, for loads whose strength varies (Mathieu, Hill, Meissner).
+        Scalar periodic factor w of the force, for loads whose strength varies (Mathieu, Hill, Meissner, pairs that
+        share a load). Not negative where the load has a mass, and without a jump where that mass is kicked.
+    transmission_error : PiecewiseChebyshev, optional
+        Scalar e(t) [m] (or angle) by which the surfaces in contact depart from their place when nothing loads them:
+        the force is that of u − e. A jump of e means that another pair takes over and gives no impulse; under a mass
+        neither e nor its slope may jump.
 
     Raises
     ------
@@ -64,6 +82,7 @@ class ContactLoad:
     mass: float = 0.0
     rate: Rate = "frozen"
     weight: PiecewiseChebyshev | None = None
+    transmission_error: PiecewiseChebyshev | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.shape, PiecewiseChebyshev):
@@ -72,16 +91,45 @@ class ContactLoad:
             value = getattr(self, name)
             keep(self, **{name: nonnegative(name, value)})
         one_of("rate", self.rate, ("frozen", "total"))
-        if self.weight is not None and self.weight.components != 1:
-            raise ValueError(f"weight must have one component; got {self.weight.components}")
-        if self.weight is not None and self.mass > 0.0:
-            raise ValueError(f"mass must be 0 for a load with a weight; got {self.mass!r}")
+        for name in ("weight", "transmission_error"):
+            function = getattr(self, name)
+            if function is not None and not isinstance(function, PiecewiseChebyshev):
+                raise TypeError(f"{name} must be a PiecewiseChebyshev or None; got {type(function).__name__}")
+            if function is not None and function.components != 1:
+                raise ValueError(f"{name} must have one component; got {function.components}")
+        if self.mass > 0.0:
+            self._require_steady_mass()
         if self.rate == "total" and self.mass > 0.0:
             jump = float(np.abs(self.shape.jumps()).max())
             if jump > 1e-9 * self.shape.largest:
                 raise ValueError(
                     f"mass must be 0 where a shape vector with total rate jumps; got mass {self.mass!r} "
                     f"and a jump of {jump:.3g}: a mass cannot be moved by a finite distance in no time"
+                )
+
+    def _require_steady_mass(self) -> None:
+        """Refuse a weight or a transmission error that a mass cannot follow."""
+        weight, error = self.weight, self.transmission_error
+        if weight is not None and _smallest(weight) < -1e-9 * weight.largest:
+            raise ValueError(
+                f"weight must not be negative for a load with a mass; got {_smallest(weight):.3g} and mass "
+                f"{self.mass!r}"
+            )
+        if weight is not None and self.rate == "total":
+            slopes = np.abs(self.slope.jumps()).max(axis=1)
+            kinks = self.slope.breakpoints[slopes > _ROUNDING_OF_A_FIT * self.slope.largest]
+            jumps = np.abs(weight(kinks) - weight(kinks, "left"))
+            if jumps.max(initial=0.0) > 1e-9 * weight.largest:
+                raise ValueError(
+                    "weight must not jump where the slope of a shape vector with total rate jumps under a mass; got a "
+                    f"jump of {jumps.max():.3g} and mass {self.mass!r}"
+                )
+        if error is not None:
+            jump = max(float(np.abs(error.derivative(order).jumps()).max()) for order in (0, 1))
+            if jump > 1e-9 * max(error.largest, error.derivative().largest):
+                raise ValueError(
+                    "transmission_error must not jump, nor its slope, for a load with a mass; got a jump of "
+                    f"{jump:.3g} and mass {self.mass!r}"
                 )
 
     @property
@@ -96,15 +144,53 @@ class ContactLoad:
 
     @cached_property
     def breakpoints(self) -> FloatArray:
-        """Instants where φ or w is not smooth, fractions of the period, ascending."""
-        if self.weight is None:
-            return self.shape.breakpoints
-        return merge_breakpoints([self.shape.breakpoints, self.weight.breakpoints])
+        """Instants where φ, w or e is not smooth, fractions of the period, ascending."""
+        others = [x.breakpoints for x in (self.weight, self.transmission_error) if x is not None]
+        return merge_breakpoints([self.shape.breakpoints, *others]) if others else self.shape.breakpoints
+
+    def moved(self, change: Callable[[PiecewiseChebyshev], PiecewiseChebyshev]) -> ContactLoad:
+        """Return the load with another course of time: shape, weight and transmission error changed alike."""
+        weight, error = (None if x is None else change(x) for x in (self.weight, self.transmission_error))
+        return replace(self, shape=change(self.shape), weight=weight, transmission_error=error)
+
+
+@dataclass(frozen=True, eq=False)
+class StateJump:
+    """A jump of the state X = (q, q̇) at an instant of the period: X⁺ = J X⁻.
+
+    For contact laws that act by impulses or start another motion; both displacement and velocity may jump.
+
+    Parameters
+    ----------
+    fraction : float
+        Instant, as a fraction of the period, in [0, 1).
+    matrix : array_like, shape (2n, 2n)
+        J.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the parameter and what would be valid.
+    """
+
+    fraction: float
+    matrix: FloatArray
+
+    def __post_init__(self) -> None:
+        fraction = within("fraction", self.fraction, 0.0, 1.0)
+        if fraction == 1.0:
+            raise ValueError(
+                "fraction must be less than 1, the end of the period is the start of the next; got 1.0"
+            )
+        matrix = real_array(self.matrix, "matrix", 2)
+        if matrix.shape[0] != matrix.shape[1]:
+            raise ValueError(f"matrix must be square, 2n rows for n coordinates; got shape {matrix.shape}")
+        keep(self, fraction=fraction, matrix=matrix)
 
 
 @dataclass(frozen=True, eq=False)
 class PeriodicSystem:
-    """M q̈ + C q̇ + K q + Σ (rank-one loads) = 0 over one period T0 (2-1, 2-2).
+    """M q̈ + C q̇ + K q + Σ (rank-one loads) = f over one period T0 (2-1, 2-2).
 
     Parameters
     ----------
@@ -116,6 +202,10 @@ class PeriodicSystem:
         The periodic loads, shape vectors with n components.
     period : float
         T0 [s].
+    force : PiecewiseChebyshev, optional
+        f, n components: generalised forces that do not depend on the motion.
+    jumps : sequence of StateJump
+        Jumps of the state that the loads do not give by themselves.
 
     Raises
     ------
@@ -129,6 +219,8 @@ class PeriodicSystem:
     stiffness: FloatArray
     loads: tuple[ContactLoad, ...]
     period: float
+    force: PiecewiseChebyshev | None = None
+    jumps: tuple[StateJump, ...] = ()
 
     def __post_init__(self) -> None:
         size = np.shape(self.mass)[0] if np.ndim(self.mass) else 0
@@ -154,7 +246,21 @@ class PeriodicSystem:
                     f"loads[{number}].shape must have {size} components, one a coordinate; "
                     f"got {load.shape.components}"
                 )
-        keep(self, period=positive("period", self.period, "s"))
+        keep(self, period=positive("period", self.period, "s"), jumps=tuple(self.jumps))
+        if self.force is not None and not isinstance(self.force, PiecewiseChebyshev):
+            raise TypeError(f"force must be a PiecewiseChebyshev or None; got {type(self.force).__name__}")
+        if self.force is not None and self.force.components != size:
+            raise ValueError(
+                f"force must have {size} components, one a coordinate; got {self.force.components}"
+            )
+        for number, jump in enumerate(self.jumps):
+            if not isinstance(jump, StateJump):
+                raise TypeError(f"jumps[{number}] must be a StateJump; got {type(jump).__name__}")
+            if jump.matrix.shape != (2 * size, 2 * size):
+                raise ValueError(
+                    f"jumps[{number}].matrix must have shape {(2 * size, 2 * size)}, displacements and velocities; "
+                    f"got {jump.matrix.shape}"
+                )
 
     @property
     def size(self) -> int:
@@ -163,8 +269,10 @@ class PeriodicSystem:
 
     @cached_property
     def breakpoints(self) -> FloatArray:
-        """Union of the loads' breakpoints with 0, fractions of the period, ascending."""
-        return merge_breakpoints([np.zeros(1), *(load.breakpoints for load in self.loads)])
+        """Instants where something is not smooth or the state jumps, and 0: fractions of the period, ascending."""
+        own = [] if self.force is None else [self.force.breakpoints]
+        jumps = np.array([jump.fraction for jump in self.jumps])
+        return merge_breakpoints([np.zeros(1), *(load.breakpoints for load in self.loads), *own, jumps])
 
     def mass_matrix(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Assembled M(t), shape (..., n, n)."""
@@ -195,7 +303,7 @@ class PeriodicSystem:
         )
         for load in self.loads:
             phi = load.shape(x, side)
-            force = phi if load.weight is None else phi * load.weight(x, side)
+            force = weighted_shape(load, x, side)
             mass += load.mass * force[..., :, None] * phi[..., None, :]
             damping += load.damping * force[..., :, None] * phi[..., None, :]
             stiffness += load.stiffness * force[..., :, None] * phi[..., None, :]
@@ -209,7 +317,7 @@ class PeriodicSystem:
         return mass, damping, stiffness
 
     def impulses(self) -> list[tuple[float, FloatArray]]:
-        """Impulsive part of K(t): Σ m φ Δφ̇ᵀ at each slope jump of a load with mass and total rate.
+        """Impulsive part of K(t): Σ w m φ Δφ̇ᵀ at each slope jump of a load with mass and total rate.
 
         Returns
         -------
@@ -224,18 +332,18 @@ class PeriodicSystem:
             largest = load.slope.largest / self.period
             for breakpoint_, jump in zip(load.shape.breakpoints, slope_jumps, strict=True):
                 # Below this it is rounding of the fit, as where a smooth function crosses the period's end.
-                if np.abs(jump).max() <= 1e-11 * largest:
+                if np.abs(jump).max() <= _ROUNDING_OF_A_FIT * largest:
                     continue
                 nearest = self.breakpoints[np.argmin(np.abs(self.breakpoints - breakpoint_))]
                 at = float(nearest)
-                matrix = load.mass * np.outer(load.shape(breakpoint_), jump)
+                matrix = load.mass * np.outer(weighted_shape(load, breakpoint_), jump)
                 found[at] = found[at] + matrix if at in found else matrix
         return sorted(found.items(), key=lambda item: item[0])
 
     def velocity_kicks(self) -> list[tuple[float, FloatArray]]:
         """Jumps of the velocity where a contact mass with total rate meets a slope jump: q̇⁺ = q̇⁻ + P q.
 
-        P = −M(t)⁻¹ Σ m φ Δφ̇ᵀ, which for M = I and one load is −φ m/(1 + m φᵀφ) Δφ̇ᵀ.
+        P = −M(t)⁻¹ Σ w m φ Δφ̇ᵀ, which for M = I and one load is −φ m/(1 + m φᵀφ) Δφ̇ᵀ.
 
         Returns
         -------
@@ -248,8 +356,27 @@ class PeriodicSystem:
             kicks.append((at, kick))
         return kicks
 
+    def state_jumps(self) -> list[tuple[float, FloatArray]]:
+        """All jumps of the state, X⁺ = J X⁻: the velocity kicks and, after them, those of :attr:`jumps`.
+
+        Returns
+        -------
+        list of (fraction, J of shape (2n, 2n))
+            Ascending fractions, each one of :attr:`breakpoints`; empty if there are none.
+        """
+        found: dict[float, FloatArray] = {}
+        for at, kick in self.velocity_kicks():
+            found[at] = np.eye(2 * self.size)
+            found[at][self.size :, : self.size] = kick
+        for jump in self.jumps:
+            away = np.abs(self.breakpoints - jump.fraction)
+            # Just below 1 is the start of the next period.
+            at = float(self.breakpoints[np.minimum(away, 1.0 - away).argmin()])
+            found[at] = jump.matrix @ found[at] if at in found else jump.matrix
+        return sorted(found.items(), key=lambda item: item[0])
+
     def fourier(self, order: int) -> tuple[FourierSeries, FourierSeries, FourierSeries]:
-        """Fourier series (2-14) of the assembled M(t), C(t), K(t), impulses of φ̈ included in K.
+        """Fourier series (2-14) of the assembled M(t), C(t), K(t), impulses of φ̈ included in K, other jumps not.
 
         Parameters
         ----------
@@ -315,15 +442,44 @@ class PeriodicSystem:
 
     def shift(self, phase: float) -> PeriodicSystem:
         """Return the system with the origin of time moved by `phase` of a period; multipliers stay."""
-        loads = tuple(
-            replace(
-                load,
-                shape=load.shape.shift(phase),
-                weight=None if load.weight is None else load.weight.shift(phase),
-            )
-            for load in self.loads
+        return self._moved(
+            lambda function: function.shift(phase),
+            tuple(
+                replace(jump, fraction=float(wrap(np.array(jump.fraction - phase)))) for jump in self.jumps
+            ),
         )
-        return replace(self, loads=loads)
+
+    def repeated(self, periods: int) -> PeriodicSystem:
+        """Return the system with several periods p taken for one: Φ is the p-th power."""
+        periods = integer_at_least("periods", periods, 1)
+        jumps = tuple(
+            replace(jump, fraction=(jump.fraction + number) / periods)
+            for number in range(periods)
+            for jump in self.jumps
+        )
+        longer = self._moved(lambda function: function.repeated(periods), jumps)
+        return replace(longer, period=periods * self.period)
+
+    def _moved(
+        self, change: Callable[[PiecewiseChebyshev], PiecewiseChebyshev], jumps: tuple[StateJump, ...]
+    ) -> PeriodicSystem:
+        loads = tuple(load.moved(change) for load in self.loads)
+        force = None if self.force is None else change(self.force)
+        return replace(self, loads=loads, force=force, jumps=jumps)
+
+
+def weighted_shape(load: ContactLoad, fraction: ArrayLike, side: Side = "right") -> FloatArray:
+    """Return w φ of a load at fractions of the period, shape (..., n)."""
+    shape = load.shape(fraction, side)
+    return shape if load.weight is None else np.asarray(shape * load.weight(fraction, side), dtype=float)
+
+
+def _smallest(function: PiecewiseChebyshev) -> float:
+    """Smallest value of a function at many instants of each piece, ends included."""
+    places = (1.0 - np.cos(np.linspace(0.0, np.pi, 8 * function.degree + 9))) / 2.0
+    inside = function.breakpoints[:, None] + function.lengths[:, None] * places[1:-1]
+    ends = [function(function.breakpoints), function(function.breakpoints, "left")]
+    return float(min(x.min() for x in (function(inside), *ends)))
 
 
 def require_system(system: object) -> None:
@@ -382,7 +538,7 @@ def without_rigid_motion(system: PeriodicSystem) -> PeriodicSystem:
     Raises
     ------
     ValueError
-        If nothing is left: no spring, damper or load at all.
+        If nothing is left: no spring, damper or load at all; or if the state jumps.
 
     Examples
     --------
@@ -396,15 +552,18 @@ def without_rigid_motion(system: PeriodicSystem) -> PeriodicSystem:
     count = round(float(np.trace(projection)))
     if count == 0:
         return system
+    if system.jumps:
+        raise ValueError(
+            "system must have no jumps of the state: they need not leave a rigid-body motion alone"
+        )
     if count == system.size:
         raise ValueError("system must have a spring, a damper or a load; got rigid-body motions only")
     basis = root @ _columns(np.eye(system.size) - projection, system.size - count)
-    loads = tuple(
-        replace(load, shape=PiecewiseChebyshev(load.shape.breakpoints, load.shape.coefficients @ basis))
-        for load in system.loads
-    )
+    loads = tuple(replace(load, shape=load.shape.transformed(basis.T)) for load in system.loads)
+    force = None if system.force is None else system.force.transformed(basis.T)
     damping, stiffness = (basis.T @ matrix @ basis for matrix in (system.damping, system.stiffness))
-    return replace(system, mass=np.eye(basis.shape[1]), damping=damping, stiffness=stiffness, loads=loads)
+    unit = np.eye(basis.shape[1])
+    return replace(system, mass=unit, damping=damping, stiffness=stiffness, loads=loads, force=force)
 
 
 def _rigid_projection(system: PeriodicSystem) -> tuple[FloatArray, FloatArray]:

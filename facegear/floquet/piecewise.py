@@ -17,7 +17,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import dct
 
-from facegear.support.parameters import finite, finite_array, integer_at_least, keep
+from facegear.support.parameters import finite, finite_array, integer_at_least, integer_within, keep
 from facegear.support.types import FloatArray
 
 Side = Literal["left", "right"]
@@ -225,6 +225,35 @@ class PiecewiseChebyshev:
         moved = wrap(self.breakpoints - phase)
         order = np.argsort(moved)
         return PiecewiseChebyshev(moved[order], self.coefficients[order])
+
+    def backwards(self) -> PiecewiseChebyshev:
+        """Return x ↦ f(−x): the function run through in the opposite sense."""
+        ends = np.append(self.breakpoints[1:], self.breakpoints[0] + 1.0)
+        starts = wrap(-ends)
+        order = np.argsort(starts)
+        signs = (-1.0) ** np.arange(self.degree + 1)
+        return PiecewiseChebyshev(starts[order], self.coefficients[order] * signs[:, None])
+
+    def repeated(self, periods: int) -> PiecewiseChebyshev:
+        """Return x ↦ f(p x): several periods p taken for one."""
+        periods = integer_at_least("periods", periods, 1)
+        starts = (self.breakpoints + np.arange(periods)[:, None]) / periods
+        return PiecewiseChebyshev(starts.ravel(), np.tile(self.coefficients, (periods, 1, 1)))
+
+    def transformed(self, matrix: ArrayLike) -> PiecewiseChebyshev:
+        """Return x ↦ A f(x) for a constant matrix A, shape (new components, components)."""
+        factor = real_array(matrix, "matrix", 2)
+        if factor.shape[1] != self.components:
+            raise ValueError(
+                f"matrix must have {self.components} columns, one a component; got shape {factor.shape}"
+            )
+        return PiecewiseChebyshev(self.breakpoints, self.coefficients @ factor.T)
+
+    def embedded(self, components: int, first: int = 0) -> PiecewiseChebyshev:
+        """Return the function as components `first`, `first` + 1, ... of a longer vector of zeros otherwise."""
+        components = integer_at_least("components", components, self.components)
+        first = integer_within("first", first, 0, components - self.components)
+        return self.transformed(np.eye(components)[:, first : first + self.components])
 
     def jumps(self) -> FloatArray:
         """Right minus left limit at each breakpoint, shape (pieces, components)."""

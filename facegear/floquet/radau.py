@@ -64,7 +64,7 @@ def _rule(stages: int) -> _Rule:
 
 @dataclass(frozen=True)
 class Radau:
-    """Radau IIA collocation on panels halved until the motion is resolved, for any system without velocity kicks.
+    """Radau IIA collocation on panels halved until the motion is resolved, for any system.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class Radau:
     Raises
     ------
     ValueError
-        When used, if the system has velocity kicks, or the family carries derivatives of the state.
+        When used, if the family carries derivatives of the state.
     ArithmeticError
         When used, if panels do not resolve the motion.
     """
@@ -94,11 +94,6 @@ class Radau:
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`facegear.floquet.multipliers.Method`."""
-        if any(family.kicks):
-            raise ValueError(
-                "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
-                "which Radau panels do not take; use Collocation or AdaptiveMagnus"
-            )
         if family.carries_derivatives:
             raise ValueError(
                 "Radau panels take a position and its rate, not their derivatives; use AdaptiveMagnus"
@@ -107,7 +102,7 @@ class Radau:
         edges = _graded_edges(family, _PANEL_ANGLE, -np.log(self.tolerance))
         panels = _Panels.between(family, rule, edges[:-1], np.diff(edges))
         for _ in range(_MOST_ROUNDS):
-            total, error = panels.product()
+            total, error = panels.product(family)
             if not np.isfinite(error).all():
                 raise ArithmeticError(
                     "transition matrix is not finite: the motion grows beyond double precision"
@@ -197,13 +192,14 @@ class _Panels:
         length = np.concatenate([self.length[~chosen], new.length])
         return _Panels(start[order], length[order], merged("steps"), merged("coefficients"))
 
-    def product(self) -> tuple[FloatArray, FloatArray]:
+    def product(self, family: Family) -> tuple[FloatArray, FloatArray]:
         """Transition matrices, shape (V, 2n, 2n), and the error each panel brings in, shape (P,)."""
         total = np.broadcast_to(np.eye(self.steps.shape[-1]), (len(self.steps), *self.steps.shape[-2:]))
         arriving = np.empty_like(self.steps)
         # A motion that grows beyond double precision shows as an error that is not finite.
         with np.errstate(over="ignore", invalid="ignore"):
-            for panel in range(self.start.size):
+            for panel, start in enumerate(self.start.tolist()):
+                total = family.jumped(total, start)
                 arriving[:, panel] = total
                 total = self.steps[:, panel] @ total
             coefficients = np.abs(self.coefficients @ arriving[:, :, np.newaxis]).max(axis=(3, 4))

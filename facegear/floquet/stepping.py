@@ -9,7 +9,7 @@ import numpy as np
 
 from facegear.floquet.collocation import chain
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, require_system
-from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev
 from facegear.support.types import ComplexArray, FloatArray
 
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB, and small stacks in cache.
@@ -112,7 +112,7 @@ class Family:
         self.size = first.size
         self.breakpoints = first.breakpoints
         self.periods = np.array([system.period for system in systems])
-        self.kicks = [dict(system.velocity_kicks()) for system in systems]
+        self.jumps = [dict(system.state_jumps()) for system in systems]
         self.mass, self.damping, self.stiffness = (
             np.stack([getattr(system, name) for system in systems])[:, None]
             for name in ("mass", "damping", "stiffness")
@@ -205,7 +205,7 @@ class Family:
         return state
 
     def product(self, edges: FloatArray, exponents: Exponents) -> FloatArray:
-        """Product of the exponentials over the sub-intervals between `edges`, kicks put in, (V, 2n, 2n)."""
+        """Product of the exponentials over the sub-intervals between `edges`, jumps put in, (V, 2n, 2n)."""
         size = 2 * self.size
         chunk = max(1, _STACK_ENTRIES // (len(self.systems) * size**2))
         total = np.broadcast_to(np.eye(size), (len(self.systems), size, size))
@@ -215,20 +215,34 @@ class Family:
             # A motion that grows beyond double precision shows as an entry that is not finite.
             with np.errstate(over="ignore", invalid="ignore"):
                 steps = exponentials(exponents(start[part], length[part], self.state_matrices))
-                self._put_in_kicks(steps, start[part])
+                self._put_in_jumps(steps, start[part])
                 total = chain(steps) @ total
         return np.asarray(total)
 
-    def _put_in_kicks(self, steps: FloatArray, start: FloatArray) -> None:
-        """Precede the sub-interval that starts at a kick's instant by the jump of the state."""
-        n = self.size
-        for number, kicks in enumerate(self.kicks):
-            for at, kick in kicks.items():
-                for place in np.flatnonzero(np.abs(start - at) < 1e-12):
-                    jump = np.eye(2 * n)
-                    jump[n:, :n] = kick
-                    jump = self.scale @ jump @ self.inverse_scale
+    def _put_in_jumps(self, steps: FloatArray, start: FloatArray) -> None:
+        """Precede the sub-interval that starts at the instant of a jump by the jump of the state."""
+        for number, jumps in enumerate(self._scaled_jumps):
+            for at, jump in jumps.items():
+                for place in np.flatnonzero(np.abs(start - at) < SAME_INSTANT):
                     steps[number, place] = steps[number, place] @ jump
+
+    def jumped(self, states: FloatArray, at: float) -> FloatArray:
+        """Scaled states (V, 2n, k) just before an instant of the period as they are just after it."""
+        if not any(self.jumps):
+            return states
+        after = states.copy()
+        for number, jumps in enumerate(self._scaled_jumps):
+            for instant, jump in jumps.items():
+                if abs(instant - at) < SAME_INSTANT:
+                    after[number] = jump @ after[number]
+        return after
+
+    @cached_property
+    def _scaled_jumps(self) -> list[dict[float, FloatArray]]:
+        """Jumps S J S⁻¹ of the scaled state of each system, by the fraction of the period."""
+        return [
+            {at: self.scale @ jump @ self.inverse_scale for at, jump in jumps.items()} for jumps in self.jumps
+        ]
 
 
 def _scaling(mass: FloatArray, frequency: float) -> FloatArray:

@@ -94,13 +94,17 @@ def computed(
 def parts_of(system: PeriodicSystem) -> Iterator[Any]:
     """Everything a system is made of, for the content of a task."""
     yield from (system.mass, system.damping, system.stiffness, system.period)
+    for jump in system.jumps:
+        yield from (jump.fraction, jump.matrix)
+    functions = [system.force]
     for load in system.loads:
         yield from (load.mass, load.damping, load.stiffness, load.rate)
-        for function in (load.shape, load.weight):
-            if function is None:
-                yield None
-            else:
-                yield from (function.breakpoints, function.coefficients)
+        functions += [load.shape, load.weight, load.transmission_error]
+    for function in functions:
+        if function is None:
+            yield None
+        else:
+            yield from (function.breakpoints, function.coefficients)
 
 
 def in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]], jobs: int) -> list[T]:

@@ -174,10 +174,10 @@ class _VariedFamily(Family):
         self, system: PeriodicSystem, derivatives: Sequence[SystemDerivative], values: FloatArray
     ) -> None:
         super().__init__([system])
-        if any(self.kicks):
+        if any(self.jumps):
             raise ValueError(
-                "system has velocity kicks (a load with mass and total rate whose shape vector has slope jumps), "
-                "whose derivatives are not known here"
+                "system has jumps of the state (its own, or velocity kicks where the slope of a shape with total rate "
+                "jumps under a mass), whose derivatives are not known here"
             )
         self._single = Family([system])
         self._derivatives = derivatives

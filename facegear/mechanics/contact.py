@@ -3,14 +3,15 @@
 A path (:class:`facegear.geometry.kinematics.ContactPath`, :class:`~facegear.geometry.kinematics.SkewLine`, or any
 class of the kind) says where each tooth pair touches at each instant of its mesh time. `Contact` puts it on a clock,
 says how the pairs in mesh share the load, and gives each load's place against t/T0; a model turns places into its own
-shape vectors, and pinions at other angles into rotated and shifted ones.
+shape vectors, and pinions at other angles, faces or flanks into rotated, shifted, mirrored ones or such that run
+backwards.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
@@ -20,7 +21,7 @@ from facegear.floquet.periodic import Rate
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, SkewLine, TimedPairs, checked_contact_ratio
-from facegear.support.parameters import keep, one_of, within
+from facegear.support.parameters import finite, keep, one_of, within
 from facegear.support.types import FloatArray
 
 Travel = Literal["printed", "with_disk"]
@@ -186,6 +187,35 @@ class LoadPlace:
             return vector(*np.moveaxis(self.position(fraction), -1, 0))
 
         return PiecewiseChebyshev.fit(along, self.position.breakpoints, tolerance=self.tolerances)
+
+    def rotated(self, angle: float) -> LoadPlace:
+        """Return the place ahead by a constant angle [rad]: that of a pinion elsewhere."""
+        ahead = np.zeros_like(self.position.coefficients)
+        ahead[:, 0, 1] = finite("angle", angle, "rad")
+        moved = PiecewiseChebyshev(self.position.breakpoints, self.position.coefficients + ahead)
+        return replace(self, position=moved)
+
+    def mirrored(self) -> LoadPlace:
+        """Return the place at the opposite angle: that of the other face, or of the other flank."""
+        return replace(self, position=self.position.transformed(np.diag([1.0, -1.0])))
+
+    def shifted(self, phase: float) -> LoadPlace:
+        """Return the place ahead in time by a part of the mesh period: t ↦ t + phase T0."""
+        return self._moved(lambda function: function.shift(phase))
+
+    def backwards(self) -> LoadPlace:
+        """Return the place run through in the opposite sense: t ↦ −t."""
+        return self._moved(PiecewiseChebyshev.backwards)
+
+    def _moved(self, change: Callable[[PiecewiseChebyshev], PiecewiseChebyshev]) -> LoadPlace:
+        """Change the course of time, and take what is said of each piece along."""
+        numbers = np.arange(len(self.in_contact), dtype=float)[:, np.newaxis, np.newaxis]
+        moved = (
+            change(PiecewiseChebyshev(self.position.breakpoints, numbers)).coefficients[:, 0, 0].astype(int)
+        )
+        return LoadPlace(
+            change(self.position), tuple(self.in_contact[i] for i in moved), self.tolerances[moved]
+        )
 
 
 @lru_cache(maxsize=256)

@@ -184,7 +184,7 @@ def disk_matrices(body: Body, speed: ArrayLike) -> tuple[FloatArray, FloatArray]
     ----------
     body : Body
     speed : array_like
-        Ω2 [rad/s], 0 or greater.
+        Ω2 [rad/s]; negative for a disk that turns towards falling θ, as the second of two disks face to face.
 
     Returns
     -------
@@ -194,11 +194,9 @@ def disk_matrices(body: Body, speed: ArrayLike) -> tuple[FloatArray, FloatArray]
     Raises
     ------
     TypeError, ValueError
-        If a speed is not a finite number of 0 or greater.
+        If a speed is not a finite number.
     """
     omega = finite_array("speed", speed, "rad/s")[..., np.newaxis, np.newaxis]
-    if np.any(omega < 0):
-        raise ValueError(f"speed must be 0 or greater in rad/s, got {speed!r}")
     xi = body.material.viscous_loss_factor
     elastic, derivative, centrifugal = _disk_terms(body)
     return xi * elastic + 2 * omega * derivative, elastic + omega**2 * centrifugal + xi * omega * (

@@ -112,13 +112,16 @@ class Transverse:
     load : MeshLoad
         μ, ζ, τ of every pinion (4-17 to 4-19).
     pinion_angles : sequence of float
-        θ_c of each pinion [rad], between -2π and 2π and all different. What is left of an angle after whole
-        teeth sets the phase of the pinion's mesh (5-1 to 5-4).
+        θ_c of each pinion [rad], between -2π and 2π, all different unless `phases` are given. What is left of an angle
+        after whole teeth sets the phase of the pinion's mesh (5-1 to 5-4).
     contact : Contact
         How the teeth touch, the same for all pinions, with one load a pinion. Default as printed: at the centroid of
         the contact lines, with Tregold's contact ratio and frozen rate.
     force : DrivingForce, optional
         In the plane of the disk (4-21), the same for all pinions. Default: none.
+    phases : sequence of float, optional
+        Phase of each pinion's mesh [mesh periods], in place of that of its angle: for gears whose teeth are clocked
+        otherwise, as those on the other face.
 
     Raises
     ------
@@ -141,6 +144,7 @@ class Transverse:
     )
     contact: Contact = CENTROID
     force: DrivingForce | None = None
+    phases: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
         for name, kind in (("body", Body), ("load", MeshLoad), ("contact", Contact)):
@@ -164,11 +168,19 @@ class Transverse:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
         for angle in angles.tolist():
             within("pinion_angles", angle, -2 * math.pi, 2 * math.pi, "rad", hint="degrees?")
+        keep(self, pinion_angles=tuple(angles.tolist()))
+        if self.phases is not None:
+            phases = finite_array("phases", self.phases)
+            if phases.shape != angles.shape:
+                raise ValueError(f"phases must list one a pinion, {angles.size}, got {self.phases!r}")
+            keep(self, phases=tuple(phases.tolist()))
+            return
         gaps = np.diff(np.sort(np.mod(angles, 2 * math.pi)), append=0.0)
         gaps[-1] = 2 * math.pi - np.ptp(np.mod(angles, 2 * math.pi))
         if gaps.min() < 1e-6:
-            raise ValueError(f"pinion_angles must differ from one another, got {self.pinion_angles!r}")
-        keep(self, pinion_angles=tuple(angles.tolist()))
+            raise ValueError(
+                f"pinion_angles must differ from one another, unless phases are given, got {self.pinion_angles!r}"
+            )
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -215,7 +227,8 @@ class Transverse:
         """Shape vector at each pinion's contact point against t/T0 (5-4)."""
         drive = self.body.drive
         first = contact_shape(self.body.modes, self.contact, drive)
-        phases = phase_split(drive, self.pinion_angles).phase
+        own = phase_split(drive, self.pinion_angles).phase
+        phases = own if self.phases is None else self.phases
         shapes = (
             rotated(self.body, first, angle).shift(phase)
             for angle, phase in zip(self.pinion_angles, phases, strict=True)

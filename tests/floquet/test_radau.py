@@ -81,11 +81,12 @@ def test_error_falls_with_the_tolerance():
     assert errors[0] > 10 * errors[1] > 100 * errors[2]
 
 
-def test_velocity_kicks_are_refused():
+def test_velocity_kicks_go_between_panels():
     shape = PiecewiseChebyshev([0.0, 0.5], [[[0.5], [0.5]], [[0.5], [-0.5]]])
     system = PeriodicSystem([[1.0]], [[0.1]], [[4.0]], (ContactLoad(shape, mass=1.0, rate="total"),), 1.0)
-    with pytest.raises(ValueError, match="velocity kicks"):
-        floquet.multipliers(system, Radau())
+    assert len(system.velocity_kicks()) == 2
+    exact = floquet.transition_matrix(system, floquet.AdaptiveMagnus(1e-12))
+    np.testing.assert_allclose(floquet.transition_matrix(system, Radau()), exact, atol=1e-10)
 
 
 @pytest.mark.parametrize("name", ["7.9a", "7.9b", "7.11a", "7.11b", "7.13a"])

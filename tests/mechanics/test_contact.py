@@ -140,3 +140,27 @@ def test_few_teeth_have_no_total_rate_on_their_contact_lines_but_on_the_skew_lin
     with pytest.raises(ValueError, match="pinion_teeth = 18 is too few for rate = 'total'"):
         Contact(sharing="each", rate="total").require(few)
     SKEW_LINE.require(few)
+
+
+@given(st.floats(-2.0, 2.0), st.floats(-1.0, 1.0))
+@settings(deadline=None, derandomize=True, max_examples=10)
+def test_places_elsewhere_mirrored_later_and_backwards(angle, phase):
+    for contact in (Contact(contact_ratio=1.6), Contact(path=ContactPath, sharing="each", contact_ratio=1.6)):
+        for place in contact.places(DRIVE):
+            radius, theta = position(place, X)
+            there = _loaded(place, X)
+            np.testing.assert_allclose(position(place.rotated(angle), X)[1], theta + angle, atol=1e-12)
+            np.testing.assert_allclose(position(place.mirrored(), X), (radius, -theta), atol=1e-12)
+            for moved, x in (
+                (place.shifted(phase), X - phase),
+                (place.backwards(), -X),
+                (place.shifted(phase).backwards(), phase - X),
+            ):
+                np.testing.assert_allclose(position(moved, x), (radius, theta), atol=1e-9)
+                assert (_loaded(moved, x) == there).all()
+                # What is said of each piece has moved with it.
+                assert moved.tolerances.sum() == pytest.approx(place.tolerances.sum())
+
+
+def _loaded(place, x):
+    return place.shape(lambda r, angle: np.ones((r.size, 1)))(x)[:, 0] == 1.0
