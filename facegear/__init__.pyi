@@ -1,6 +1,7 @@
 from .design.body import critical_thickness as critical_thickness
 from .drives.drive_file import read_drive_file as read_drive_file
 from .floquet.hsu import resonance_bands as resonance_bands
+from .floquet.models import Excited as Excited
 from .floquet.models import WithoutRigidMotion as WithoutRigidMotion
 from .floquet.models import replace_parameter as replace_parameter
 from .floquet.multipliers import error_estimate as error_estimate
@@ -10,10 +11,13 @@ from .floquet.multipliers import transition_matrix as transition_matrix
 from .floquet.periodic import ContactLoad as ContactLoad
 from .floquet.periodic import PeriodicSystem as PeriodicSystem
 from .floquet.piecewise import PiecewiseChebyshev as PiecewiseChebyshev
+from .floquet.response import steady_response as steady_response
 from .geometry.drive import Drive as Drive
 from .geometry.kinematics import ContactPath as ContactPath
 from .geometry.kinematics import SkewLine as SkewLine
 from .geometry.phases import phase_split as phase_split
+from .maps.response_map import frequency_response as frequency_response
+from .maps.response_map import response_map as response_map
 from .maps.stability_map import stability_map as stability_map
 from .maps.tracing import tongues as tongues
 from .mechanics.contact import Contact as Contact
@@ -38,6 +42,7 @@ __all__ = [
     "Drive",
     "DrivingForce",
     "EdgeLoadStress",
+    "Excited",
     "Gearbox",
     "MeshLoad",
     "PeriodicSystem",
@@ -48,6 +53,7 @@ __all__ = [
     "WithoutRigidMotion",
     "critical_thickness",
     "error_estimate",
+    "frequency_response",
     "growth_rate",
     "multipliers",
     "phase_split",
@@ -55,8 +61,10 @@ __all__ = [
     "read_drive_file",
     "replace_parameter",
     "resonance_bands",
+    "response_map",
     "rpm",
     "stability_map",
+    "steady_response",
     "tongues",
     "transition_matrix",
     "watt",

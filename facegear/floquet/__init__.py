@@ -3,7 +3,8 @@
 `periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
 `multipliers` the transition matrix by the methods of `collocation`, `stepping` and `radau`, `columns` and
 `multiplier_curves` the same along a parameter and along speed; `modes` has natural motions, `labels` names what is
-unstable; `modal`, `averaging`, `hsu` are the approximations.
+unstable; `modal`, `averaging`, `hsu` are the approximations. `response` has the steady motion that forces cause, along
+the panels of `motion`.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*
@@ -24,5 +25,5 @@ Radau            yes    yes         yes    yes      no             31     16 n e
 The order holds at jumps of A(t) too. That of Stepwise is 2 where there are none; of the last two it is that of the
 default number of nodes, at the end of a panel.
 Public: `PeriodicSystem`, `ContactLoad`, `PiecewiseChebyshev`, `transition_matrix`, `multipliers`, `growth_rate`,
-`error_estimate`, `WithoutRigidMotion`, `replace_parameter`, `resonance_bands`.
+`error_estimate`, `steady_response`, `Excited`, `WithoutRigidMotion`, `replace_parameter`, `resonance_bands`.
 """

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.floquet.modes import NaturalMotions
+from facegear.floquet.motion import MotionPanels, known_errors
 from facegear.floquet.periodic import ContactLoad, LoadColumn, PeriodicSystem, weighted_shape
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 from facegear.support.types import ComplexArray, FloatArray
@@ -218,57 +219,105 @@ def _split(matrix: ComplexArray) -> FloatArray:
     return np.concatenate([matrix.real, -matrix.imag], axis=-1)
 
 
+@dataclass(frozen=True, eq=False)
+class Nodes:
+    """Modes, loads and forces of S systems at the N Gauss nodes of P panels; p loads, n modes.
+
+    Attributes
+    ----------
+    fractions : array, shape (P, N)
+        Instants, fractions of the period.
+    spans : array, shape (S, P)
+        Lengths h of the panels [s].
+    spread : array of complex, shape (S, P, N, n)
+        e^{Λ(t − t_middle)}: from the middle of a panel, so that neither they nor their inverses grow large.
+    half : array of complex, shape (S, P, n)
+        e^{Λh/2}.
+    reading : array of complex, shape (3, S, P, N, p, n)
+        z₀, z₁, z₂: what u, u̇ and ü of the free motion are made of.
+    beta : array of complex, shape (S, P, N, p, n)
+        Modal accelerations β by unit contact forces.
+    direct : array, shape (S, P, N, p, p)
+        D, accelerations ü by unit contact forces.
+    """
+
+    fractions: FloatArray
+    spans: FloatArray
+    spread: ComplexArray
+    half: ComplexArray
+    reading: ComplexArray
+    beta: ComplexArray
+    direct: FloatArray
+
+    @classmethod
+    def of(
+        cls,
+        systems: Sequence[PeriodicSystem],
+        modes: FreeModes,
+        nodes: int,
+        start: FloatArray,
+        length: FloatArray,
+    ) -> Nodes:
+        """Evaluate everything on panels of given starts and lengths, fractions of the period (P,)."""
+        x, _, _ = gauss_rule(nodes)
+        periods = np.array([system.period for system in systems])
+        systems_, count, p, n = len(systems), start.size, len(systems[0].loads), modes.size
+        fractions = start[:, None] + length[:, None] * x
+        h = periods[:, None] * length
+        exponents = modes.eigenvalues[:, None, :] * h[:, :, None]
+
+        # Modes act on the last axis of what is known at all nodes of all panels: (S or 1, P, N p, n).
+        def values(part: Callable[[ContactLoad], PiecewiseChebyshev]) -> FloatArray:
+            found = _at_nodes(systems, part, fractions)
+            return found.reshape(len(found), count * nodes * p, n)
+
+        def readings(by: FloatArray, factors: ComplexArray) -> ComplexArray:
+            return np.asarray((by @ factors).reshape(systems_, count, nodes, p, n), dtype=complex)
+
+        phi = values(lambda load: load.shape)
+        weighted = phi
+        if any(load.weight is not None for load in systems[0].loads):
+            factor = _at_nodes(systems, _weight, fractions)
+            weighted = phi * factor.reshape(len(factor), count * nodes * p, 1)
+        velocity = modes.velocity
+        acceleration = velocity * modes.eigenvalues[:, None, :]
+        read = np.stack([readings(phi, part) for part in (modes.displacement, velocity, acceleration)])
+        total = np.array([load.rate == "total" for load in systems[0].loads])
+        if total.any():
+            rate = total[:, None] / periods[:, None, None, None, None]
+            slope = values(lambda load: load.slope)
+            read[1] += rate * readings(slope, modes.displacement)
+            read[2] += 2.0 * rate * readings(slope, velocity)
+            read[2] += rate**2 * readings(values(lambda load: load.curvature), modes.displacement)
+        inverse = np.linalg.inv(np.stack([system.mass for system in systems]))
+        moved = (weighted @ inverse).reshape(systems_, count, nodes, p, n)
+        return cls(
+            fractions=fractions,
+            spans=h,
+            spread=np.exp(exponents[:, :, None, :] * (x[:, None] - 0.5)),
+            half=np.exp(exponents / 2.0),
+            reading=read,
+            beta=readings(weighted, modes.input.swapaxes(-1, -2)),
+            direct=phi.reshape(len(phi), count, nodes, p, n) @ moved.swapaxes(-1, -2),
+        )
+
+
 def _build(
     systems: Sequence[PeriodicSystem], modes: FreeModes, nodes: int, start: FloatArray, length: FloatArray
 ) -> _Panels:
-    x, weights, integration = gauss_rule(nodes)
-    periods = np.array([system.period for system in systems])
+    _, weights, integration = gauss_rule(nodes)
+    at = Nodes.of(systems, modes, nodes, start, length)
     systems_, count, p, n = len(systems), start.size, len(systems[0].loads), modes.size
-    fractions = start[:, None] + length[:, None] * x
-    h = periods[:, None] * length
-    # Exponentials from the middle of each panel, so that neither they nor their inverses grow large.
-    exponents = modes.eigenvalues[:, None, :] * h[:, :, None]
-    spread = np.exp(exponents[:, :, None, :] * (x[:, None] - 0.5))
-    half = np.exp(exponents / 2.0)
-
-    # Modes act on the last axis of what is known at all nodes of all panels: (S or 1, P, N p, n).
-    def values(part: Callable[[ContactLoad], PiecewiseChebyshev]) -> FloatArray:
-        found = _at_nodes(systems, part, fractions)
-        return found.reshape(len(found), count * nodes * p, n)
-
-    def readings(by: FloatArray, factors: ComplexArray) -> ComplexArray:
-        return np.asarray((by @ factors).reshape(systems_, count, nodes, p, n), dtype=complex)
-
-    phi = values(lambda load: load.shape)
-    weighted = phi
-    if any(load.weight is not None for load in systems[0].loads):
-        factor = _at_nodes(systems, _weight, fractions)
-        weighted = phi * factor.reshape(len(factor), count * nodes * p, 1)
-    velocity = modes.velocity
-    acceleration = velocity * modes.eigenvalues[:, None, :]
-    read = np.stack([readings(phi, part) for part in (modes.displacement, velocity, acceleration)])
-    total = np.array([load.rate == "total" for load in systems[0].loads])
-    if total.any():
-        rate = total[:, None] / periods[:, None, None, None, None]
-        slope = values(lambda load: load.slope)
-        read[1] += rate * readings(slope, modes.displacement)
-        read[2] += 2.0 * rate * readings(slope, velocity)
-        read[2] += rate**2 * readings(values(lambda load: load.curvature), modes.displacement)
-    beta = readings(weighted, modes.input.swapaxes(-1, -2))
-
-    rows = (read * spread[:, :, :, None, :]).reshape(3, systems_, count, nodes * p, n)
-    columns = (beta / spread[:, :, :, None, :]).reshape(systems_, count, nodes * p, n)
+    rows = (at.reading * at.spread[:, :, :, None, :]).reshape(3, systems_, count, nodes * p, n)
+    columns = (at.beta / at.spread[:, :, :, None, :]).reshape(systems_, count, nodes * p, n)
     kernel = _split(rows) @ np.concatenate([columns.real, columns.imag], axis=-1).swapaxes(-1, -2)
     window = np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
-    force_on_force = kernel * (h[:, :, None, None] * window)
-    inverse = np.linalg.inv(np.stack([system.mass for system in systems]))
-    moved = (weighted @ inverse).reshape(systems_, count, nodes, p, n)
-    direct = phi.reshape(len(phi), count, nodes, p, n) @ moved.swapaxes(-1, -2)
+    force_on_force = kernel * (at.spans[:, :, None, None] * window)
     blocks = force_on_force[2].reshape(systems_, count, nodes, p, nodes, p)
-    blocks[:, :, np.arange(nodes), :, np.arange(nodes), :] += np.moveaxis(direct, 2, 0)
+    blocks[:, :, np.arange(nodes), :, np.arange(nodes), :] += np.moveaxis(at.direct, 2, 0)
 
-    push = (columns * half[:, :, None, :]) * (h[:, :, None] * np.repeat(weights, p))[..., None]
-    decay = half**2
+    push = (columns * at.half[:, :, None, :]) * (at.spans[:, :, None] * np.repeat(weights, p))[..., None]
+    decay = at.half**2
     free = np.zeros((systems_, count, 2 * n, 2 * n))
     i = np.arange(n)
     free[..., i, i] = free[..., n + i, n + i] = decay.real
@@ -276,7 +325,7 @@ def _build(
     free[..., i, n + i] = -decay.imag
     return _Panels(
         force_on_force=force_on_force,
-        force_on_state=_split(rows * half[:, :, None, :]),
+        force_on_state=_split(rows * at.half[:, :, None, :]),
         free=free,
         input=np.concatenate([push.real, push.imag], axis=-1).swapaxes(-1, -2),
     )
@@ -414,6 +463,7 @@ class FreeMotion:
         fewest_held: int = 1,
     ) -> None:
         self.systems = systems
+        self._nodes = nodes
         stiffest = float((column.stiffness * mobilities(systems)).sum(axis=-1).max())
         self._held = _Held.of(systems, stiffest, fewest_held)
         self.modes = self._held.modes
@@ -492,19 +542,74 @@ class FreeMotion:
 
     def _forces(self, column: LoadColumn, panels: _Panels) -> FloatArray:
         """Contact forces at the nodes of each panel, for unit modal coordinates at its start, (V, P, N p, 2n)."""
-        size = panels.input.shape[-1]
+        return np.asarray(
+            np.linalg.solve(*self._equations(self._load_parameters(column), panels)), dtype=float
+        )
+
+    def _load_parameters(self, column: LoadColumn) -> FloatArray:
+        """Stiffness, damping and mass of all loads, springs taken back included, shape (3, V, p)."""
         springs = np.broadcast_to(self._held.springs, (len(column), self._held.springs.shape[1]))
         none = np.zeros_like(springs)
-        left = np.broadcast_to(np.eye(size), (len(column), *panels.force_on_force.shape[2:])).copy()
-        right = np.zeros((len(column), *panels.force_on_state.shape[2:]))
-        parameters = ((column.stiffness, -springs), (column.damping, none), (column.mass, none))
-        for order, parts in enumerate(parameters):
-            values = np.concatenate(parts, axis=1)
+        parts = ((column.stiffness, -springs), (column.damping, none), (column.mass, none))
+        return np.stack([np.concatenate(part, axis=1) for part in parts])
+
+    def motion_panels(self, column: LoadColumn) -> MotionPanels:
+        """Follow the motion of the one system with one value of its load parameters, forces included."""
+        (system,), modes = self.systems, self.modes
+        x, weights, integration = gauss_rule(self._nodes)
+        at = Nodes.of(self._held.systems, modes, self._nodes, self.edges[:-1], np.diff(self.edges))
+        spread, half, span, beta = at.spread[0], at.half[0], at.spans[0][:, None, None], at.beta[0]
+
+        # What forces alone do: y of modes at the nodes and at the end, u, u̇ and ü of all loads, e taken off.
+        force = np.zeros((*at.fractions.shape, system.size))
+        if system.force is not None:
+            force = system.force(at.fractions)
+        push = force @ modes.input[0].T
+        alone = spread * (span * (integration @ (push / spread)))
+        at_end = half * span[..., 0] * np.einsum("j,pjm->pm", weights, push / spread)
+        known = (at.reading[:, 0] @ alone[..., None])[..., 0].real
+        (shapes,) = _at_nodes(self._held.systems, lambda load: load.shape, at.fractions)
+        known[2] += (shapes @ np.linalg.solve(system.mass, force[..., None]))[..., 0]
+        known[..., : len(system.loads)] -= known_errors(system, at.fractions)
+
+        parameters = self._load_parameters(column)
+        left, right = self._equations(parameters, self.panels)
+        sizes = (parameters[:, 0, np.newaxis, np.newaxis] * known).sum(axis=0).reshape(*right.shape[1:3], 1)
+        forces = np.linalg.solve(left[0], np.concatenate([right[0], sizes], axis=-1))
+        to_state, to_real = modes.state_from_real()[0], modes.real_from_state()[0]
+        whole = -(self.panels.input[0] @ forces)
+        offsets = whole[..., -1] + np.concatenate([at_end.real, at_end.imag], axis=-1)
+
+        def inside(starts: FloatArray) -> FloatArray:
+            real = starts @ to_real.T
+            loads = (forces[..., :-1] @ real[..., None])[..., 0] + forces[..., -1]
+            pushed = push - (beta.swapaxes(-1, -2) @ loads.reshape(*beta.shape[:3], 1))[..., 0]
+            first = real[:, np.newaxis, : modes.size] + 1j * real[:, np.newaxis, modes.size :]
+            y = spread * (half[:, np.newaxis] * first + span * (integration @ (pushed / spread)))
+            both = np.concatenate([modes.displacement[0], modes.velocity[0]])
+            return np.asarray((y @ both.T).real, dtype=float)
+
+        return MotionPanels(
+            edges=self.edges,
+            nodes=x,
+            steps=np.asarray(to_state @ (self.panels.free[0] + whole[..., :-1]) @ to_real, dtype=float),
+            offsets=np.asarray(offsets @ to_state.T, dtype=float),
+            inside=inside,
+        )
+
+    @staticmethod
+    def _equations(parameters: FloatArray, panels: _Panels) -> tuple[FloatArray, FloatArray]:
+        """Left and right side of the equations for the contact forces, (V, P, N p, N p) and (V, P, N p, 2n)."""
+        size = panels.input.shape[-1]
+        count = parameters.shape[1]
+        left = np.broadcast_to(np.eye(size), (count, *panels.force_on_force.shape[2:])).copy()
+        right = np.zeros((count, *panels.force_on_state.shape[2:]))
+        for order, values in enumerate(parameters):
             if values.any():
                 factor = np.tile(values, (1, size // values.shape[1]))[:, None, :, None]
                 left += factor * panels.force_on_force[order]
                 right += factor * panels.force_on_state[order]
-        return np.asarray(np.linalg.solve(left, right), dtype=float)
+        return left, right
 
     def transition_matrices_to(self, instants: Sequence[float], column: LoadColumn) -> FloatArray:
         """Φ from the period's origin to some of the instants, for one value, shape (K, 2n, 2n); as Φ of the period."""

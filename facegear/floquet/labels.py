@@ -2,8 +2,9 @@
 
 The motion of the critical multiplier λ = e^{(σ + iθ/T0) T0} is made of the natural motions of the mean system, of
 which those matter that keep in step with it: ±ω_k ≡ θ/T0 modulo ω = 2π/T0. Two such, Ω_a − Ω_b ≈ sω, make a
-combination resonance of order s. It is a sum if their frequencies have different signs, else a difference. Modes are
-numbered as in :mod:`facegear.floquet.modal`, by ascending natural frequency of the mean system at the given speed.
+combination resonance of order s. It is a sum if their frequencies have different signs, else a difference. A steady
+response that forces cause is large where one of them is in step with a harmonic, ω_k ≈ sω. Modes are numbered as in
+:mod:`facegear.floquet.modal`, by ascending natural frequency of the mean system at the given speed.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from facegear.floquet.collocation import UnsuitableSystemError, transition_matri
 from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.multipliers import Method, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.response import SteadyResponse
 from facegear.support.types import ComplexArray, FloatArray
 
 Kind = Literal["sum", "difference", "mean"]
@@ -57,6 +59,54 @@ class Combination:
         if self.kind == "sum":
             return f"({self.k}+{self.j})/{self.order}"
         return f"({self.j}-{self.k})/{self.order}"
+
+
+@dataclass(frozen=True)
+class Resonance:
+    """What makes a steady response large: a natural motion in step with a harmonic of the mesh.
+
+    Attributes
+    ----------
+    k : int
+        Number of the natural frequency, from 1, ascending; 0 if nothing oscillates.
+    order : int
+        s of sω ≈ ω_k.
+    """
+
+    k: int
+    order: int
+
+    @property
+    def label(self) -> str:
+        """Such as "3/2": the third natural motion, driven twice in a mesh period."""
+        return f"{self.k}/{self.order}"
+
+
+def resonance(response: SteadyResponse) -> Resonance:
+    """Name the resonance that a steady response is mostly made of.
+
+    Parameters
+    ----------
+    response : SteadyResponse
+        Best taken at a peak over speed.
+
+    Returns
+    -------
+    Resonance
+        Of all natural motions of the mean system and all harmonics near them the two with the largest energy.
+    """
+    system = response.system
+    modes = _MeanModes.of(system)
+    frequency = 2.0 * np.pi / system.period
+    oscillating = np.flatnonzero((modes.numbers > 0) & (modes.eigenvalues.imag > 0.0))
+    if oscillating.size == 0:
+        return Resonance(0, 0)
+    steps = modes.eigenvalues[oscillating].imag / frequency
+    harmonics = response.harmonics(int(steps.max()) + 1)[1:]
+    energy = np.abs(modes.coordinates[oscillating] @ harmonics.T) ** 2
+    detuning = (steps[:, np.newaxis] - np.arange(1, len(harmonics) + 1)) / _DETUNING
+    mode, order = np.unravel_index(int((energy / (1.0 + detuning**2)).argmax()), energy.shape)
+    return Resonance(int(modes.numbers[oscillating[mode]]), int(order) + 1)
 
 
 def combination(system: PeriodicSystem, method: Method | None = None) -> Combination:

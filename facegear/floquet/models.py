@@ -17,6 +17,7 @@ from typing import Any, Protocol, TypeVar, get_args, get_type_hints
 from numpy.typing import ArrayLike
 
 from facegear.floquet.periodic import PeriodicSystem, named, without_rigid_motion
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.support.types import FloatArray
 
 
@@ -99,6 +100,72 @@ class WithoutRigidMotion:
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of what is left, at a constant speed [rad/s]."""
         return without_rigid_motion(self.model.system(speed))
+
+
+@dataclass(frozen=True)
+class Excited:
+    """A model under forces and transmission errors of the mesh period: what makes a stable drive vibrate.
+
+    Stability does not hang on them; :func:`facegear.floquet.response.steady_response` and
+    :func:`facegear.maps.response_map.frequency_response` have what they cause.
+
+    Parameters
+    ----------
+    model : Model
+    force : PiecewiseChebyshev, optional
+        Generalised forces against t/T0, one component a coordinate: torques and their ripple, for example. Default:
+        those that the model has by itself.
+    transmission_error : PiecewiseChebyshev, optional
+        Static transmission error e of the unloaded mesh against t/T0 [m] (or an angle, as u has it), the same at all
+        loads. Default: those of the model.
+
+    Raises
+    ------
+    TypeError
+        If an argument is of the wrong kind.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from facegear.floquet.piecewise import PiecewiseChebyshev
+    >>> from facegear.mechanics.classical import Mathieu
+    >>> wave = PiecewiseChebyshev.fit(lambda x, piece: 1e-6 * np.cos(2.0 * np.pi * x), [0.0])
+    >>> (load,) = Excited(Mathieu(depth=0.2), transmission_error=wave).system(0.7).loads
+    >>> load.transmission_error is wave
+    True
+    """
+
+    model: Model
+    force: PiecewiseChebyshev | None = None
+    transmission_error: PiecewiseChebyshev | None = None
+
+    def __post_init__(self) -> None:
+        require_model(self.model)
+        for name in ("force", "transmission_error"):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, PiecewiseChebyshev):
+                raise TypeError(f"{name} must be a PiecewiseChebyshev or None, got {named(value)}")
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Those of the model."""
+        return self.model.coordinates
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of the model at a constant speed [rad/s], forces put in.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If the model's loads do not take them: see :class:`facegear.floquet.periodic.ContactLoad`.
+        """
+        system = self.model.system(speed)
+        if self.force is not None:
+            system = dataclasses.replace(system, force=self.force)
+        if self.transmission_error is not None:
+            loads = (dataclasses.replace(x, transmission_error=self.transmission_error) for x in system.loads)
+            system = dataclasses.replace(system, loads=tuple(loads))
+        return system
 
 
 def require_model(model: object) -> None:

@@ -23,7 +23,8 @@ import numpy as np
 
 from facegear.floquet import collocation
 from facegear.floquet.collocation import UnsuitableSystemError
-from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.motion import MotionPanels
+from facegear.floquet.periodic import LoadColumn, PeriodicSystem
 from facegear.floquet.stepping import Family, aligned_edges, gauss_magnus, midpoint
 from facegear.support.parameters import integer_at_least, keep, within
 from facegear.support.types import ComplexArray, FloatArray
@@ -243,6 +244,16 @@ class Collocation:
         )
         return np.asarray(family.scale @ matrices @ family.inverse_scale, dtype=float)
 
+    def motion_panels(self, system: PeriodicSystem, instants: Sequence[float]) -> MotionPanels:
+        """See :class:`facegear.floquet.motion.FollowsMotion`.
+
+        Panels are half as long: along them forces are known with the root of the accuracy of the ends only.
+        """
+        column = LoadColumn.of(system)
+        angle = self.panel_angle / 2.0
+        motion = collocation.FreeMotion([system], column, self.nodes, angle, instants, self.fewest_held)
+        return motion.motion_panels(column)
+
     def refined(self) -> Method:
         """Half as many nodes again and shorter panels."""
         return Collocation(self.nodes + self.nodes // 2, 0.7 * self.panel_angle, self.fewest_held)
@@ -261,7 +272,7 @@ FIRST = Collocation(fewest_held=6)
 GENERAL = AdaptiveMagnus(1e-9)
 
 
-def with_method(method: Method | None, compute: Callable[[Method], T]) -> T:
+def with_method(method: Method | None, compute: Callable[[Method], T], otherwise: Method = GENERAL) -> T:
     """Compute something by the method that is named, or by the one that suits: the only place where that is decided.
 
     Collocation where it applies, else adaptive Magnus, of order 10. One computation, such as a column of a map or a
@@ -272,6 +283,8 @@ def with_method(method: Method | None, compute: Callable[[Method], T]) -> T:
     method : Method, optional
     compute : callable
         Is given the method. Called once more if collocation refuses a system.
+    otherwise : Method
+        What is taken then.
 
     Examples
     --------
@@ -285,7 +298,7 @@ def with_method(method: Method | None, compute: Callable[[Method], T]) -> T:
     try:
         return compute(FIRST)
     except UnsuitableSystemError:
-        return compute(GENERAL)
+        return compute(otherwise)
 
 
 def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> FloatArray:

@@ -12,6 +12,7 @@ resolved by their Legendre series.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -21,7 +22,9 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from facegear.floquet.piecewise import SAME_INSTANT
+from facegear.floquet.motion import MotionPanels, known_forces
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import SAME_INSTANT, merge_breakpoints
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import integer_within, keep, within
 from facegear.support.types import FloatArray
@@ -114,6 +117,16 @@ class Radau:
         raise ArithmeticError(
             f"{panels.start.size} panels of {self.stages} Radau nodes do not resolve the motion to {self.tolerance:.1g}"
         )
+
+    def motion_panels(self, system: PeriodicSystem, instants: Sequence[float]) -> MotionPanels:
+        """See :class:`facegear.floquet.motion.FollowsMotion`.
+
+        Panels are half as long as those of a transition matrix to begin with; who asks says where that is not enough.
+        """
+        family, rule = Family([system]), _rule(self.stages)
+        ends = _graded_edges(family, _PANEL_ANGLE / 2.0, -np.log(self.tolerance))
+        edges = np.append(merge_breakpoints([ends[:-1], np.array(instants)]), 1.0)
+        return _motion_panels(family, rule, edges)
 
     def refined(self) -> Radau:
         """Four more nodes a panel and a hundredth of the tolerance."""
@@ -212,10 +225,22 @@ class _Panels:
         return total, np.asarray((error / largest[:, np.newaxis]).max(axis=0), dtype=float)
 
 
-def _solved(
-    family: Family, rule: _Rule, start: FloatArray, length: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Solve some panels for their steps and coefficients."""
+class _Equations(NamedTuple):
+    """Equations for y2' at the nodes, y1' = a y2, y2' = L y1 + D y2 in scaled coordinates; V systems, P panels."""
+
+    left: FloatArray
+    """Shape (V, P, m n, m n)."""
+    right: FloatArray
+    """For unit states at the start, shape (V, P, m n, 2n)."""
+    length: FloatArray
+    """h, shape (1, P, 1, 1, 1)."""
+    a: FloatArray
+    """Shape (V, P, 1, 1, 1)."""
+    fractions: FloatArray
+    """Instants of the nodes, shape (P, m)."""
+
+
+def _equations(family: Family, rule: _Rule, start: FloatArray, length: FloatArray) -> _Equations:
     n, m, count = family.size, rule.nodes.size, start.size
     points = start[:, np.newaxis] + length[:, np.newaxis] * rule.nodes
     # The last node is the end of the panel, where a pair may enter or leave: what counts is the side before.
@@ -234,14 +259,62 @@ def _solved(
     left = left.reshape(*L.shape[:2], m * n, m * n)
     left[..., diagonal, diagonal] += 1.0
     right = np.concatenate([L, h * a * rule.nodes[:, np.newaxis] * L + D], axis=-1)
-    rates = np.linalg.solve(left, right.reshape(*L.shape[:2], m * n, 2 * n))
-    rates = rates.reshape(*L.shape[:2], n, m, 2 * n)
+    right = right.reshape(*L.shape[:2], m * n, 2 * n)
+    return _Equations(left, right, h, a, points.reshape(count, m))
+
+
+def _solved(
+    family: Family, rule: _Rule, start: FloatArray, length: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Solve some panels for their steps and coefficients."""
+    n, m = family.size, rule.nodes.size
+    left, right, h, a, _ = _equations(family, rule, start, length)
+    rates = np.linalg.solve(left, right).reshape(*left.shape[:2], n, m, 2 * n)
     ends = np.stack([rule.twice[-1], rule.once[-1], *rule.to_legendre[:_LEADING], *rule.to_legendre[-_LAST:]])
     sums = h * np.moveaxis(ends @ rates, 3, 2)
-    steps = np.zeros((*L.shape[:2], 2 * n, 2 * n))
+    steps = np.zeros((*left.shape[:2], 2 * n, 2 * n))
     h, a = h[..., 0], a[..., 0]
     steps[..., :n, :] = h * a * sums[:, :, 0]
     steps[..., n:, :] = sums[:, :, 1]
     steps += np.eye(2 * n)
     steps[..., :n, n:] += (h * a) * np.eye(n)
     return steps, sums[:, :, 2:]
+
+
+def _motion_panels(family: Family, rule: _Rule, edges: FloatArray) -> MotionPanels:
+    """Follow the motion of the one system of a family, forces included."""
+    (system,), n, m = family.systems, family.size, rule.nodes.size
+    left, right, h, a, fractions = _equations(family, rule, edges[:-1], np.diff(edges))
+    h, a = h[0, ..., 0], a[0, ..., 0]
+    forces = known_forces(system, fractions)[..., np.newaxis]
+    accelerations = np.linalg.solve(system.mass_matrix(fractions), forces)[..., 0]
+    pushed = system.period * accelerations @ family.scale[n:, n:].T
+    pushed = pushed.swapaxes(-1, -2).reshape(*left.shape[1:3], 1)
+    rates = np.linalg.solve(left[0], np.concatenate([right[0], pushed], axis=-1))
+    rates = rates.reshape(-1, n, m, 2 * n + 1)
+
+    def moved(
+        starts: FloatArray, by: FloatArray, once: FloatArray, twice: FloatArray, c: FloatArray
+    ) -> FloatArray:
+        """Scaled states (P, 2n, k) at some nodes c, from y2' (P, n, m, k): (P, 2n, nodes, k)."""
+        first, second = starts[:, :n, np.newaxis], starts[:, n:, np.newaxis]
+        drift = (h * a)[..., np.newaxis] * c[:, np.newaxis] * second
+        velocity = second + h[..., np.newaxis] * (once @ by)
+        return np.concatenate([first + drift + (h**2 * a)[..., np.newaxis] * (twice @ by), velocity], axis=1)
+
+    unit = np.concatenate([np.eye(2 * n), np.zeros((2 * n, 1))], axis=1)
+    ends = moved(
+        np.broadcast_to(unit, (len(rates), *unit.shape)), rates, rule.once[-1:], rule.twice[-1:], np.ones(1)
+    )
+    ends = family.inverse_scale @ ends[:, :, 0]
+
+    def inside(starts: FloatArray) -> FloatArray:
+        scaled = starts @ family.scale.T
+        by = (rates[..., :-1] @ scaled[:, np.newaxis, :, np.newaxis])[..., 0] + rates[..., -1]
+        states = moved(scaled[..., np.newaxis], by[..., np.newaxis], rule.once, rule.twice, rule.nodes)[
+            ..., 0
+        ]
+        return np.asarray(states.swapaxes(-1, -2) @ family.inverse_scale.T, dtype=float)
+
+    steps = np.asarray(ends[..., :-1] @ family.scale, dtype=float)
+    return MotionPanels(edges, rule.nodes, steps, np.asarray(ends[..., -1], dtype=float), inside)

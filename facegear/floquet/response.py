@@ -1,0 +1,243 @@
+"""Steady response of a stable system to forces and transmission errors of its own period.
+
+From one period to the next the state goes from X to Φ X + X_p, where X_p is what the forces make of a system at rest.
+The motion that repeats itself starts from the solution of (I − Φ) X = X_p. Near a multiplier 1 that solution grows
+without bound, and so does what rounding makes of it: `SteadyResponse.condition` tells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import chebyshev, legendre
+from numpy.typing import ArrayLike
+
+from facegear.floquet.motion import FollowsMotion, MotionPanels, known_errors, known_forces
+from facegear.floquet.multipliers import Method, with_method
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev, Side
+from facegear.floquet.radau import Radau
+from facegear.floquet.stepping import Family
+from facegear.support.types import ComplexArray, FloatArray
+
+# Largest part of the last coefficients of the motion along a panel, at which the panel is halved.
+_TOLERANCE = 1e-12
+# Rounds of halving after which a motion is given up.
+_MOST_ROUNDS = 12
+# A spectral radius beyond 1 by more than this is unstable and no rounding.
+_BEYOND = 1e-9
+# Condition from which on half of all digits of the response are lost.
+_LOST = 1e8
+# Method where contact-force collocation does not apply.
+_OTHERWISE = Radau(16, 1e-13)
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyResponse:
+    """The motion of a system that repeats itself each period.
+
+    Attributes
+    ----------
+    system : PeriodicSystem
+    state : PiecewiseChebyshev
+        q and q̇, 2n components, against t/T0.
+    spectral_radius : float
+        max|λ| of the system [-]: below 1, all motions end in this one.
+    condition : float
+        Norm of (I − Φ)⁻¹ times that of Φ, or 1, in energy-like coordinates [-]: by so much an error of Φ, relative to
+        its largest entry, may be larger in the response, relative to what the forces make of a system at rest.
+    """
+
+    system: PeriodicSystem
+    state: PiecewiseChebyshev
+    spectral_radius: float
+    condition: float
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether max|λ| is not beyond 1, but for rounding."""
+        return self.spectral_radius <= 1.0 + _BEYOND
+
+    def displacements(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
+        """Coordinates q at fractions of the period, shape (..., n)."""
+        return np.asarray(self.state(fraction, side)[..., : self.system.size], dtype=float)
+
+    def velocities(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
+        """Rates q̇ of the coordinates at fractions of the period, shape (..., n)."""
+        return np.asarray(self.state(fraction, side)[..., self.system.size :], dtype=float)
+
+    def accelerations(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
+        """Accelerations q̈ from the equations of motion at fractions of the period, shape (..., n)."""
+        x, system = np.asarray(fraction, dtype=float), self.system
+        forces = known_forces(system, x, side)[..., np.newaxis]
+        forces -= system.damping_matrix(x, side) @ self.velocities(x, side)[..., np.newaxis]
+        forces -= system.stiffness_matrix(x, side) @ self.displacements(x, side)[..., np.newaxis]
+        return np.asarray(np.linalg.solve(system.mass_matrix(x, side), forces)[..., 0], dtype=float)
+
+    def contact_displacements(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
+        """Displacement u = φᵀq − e of each load at fractions of the period, shape (..., p)."""
+        return self._contact(fraction, side)[0]
+
+    def contact_forces(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
+        """Force w (k u + c u̇ + m ü) of each load at fractions of the period, shape (..., p)."""
+        u = self._contact(fraction, side)
+        forces = np.zeros_like(u[0])
+        for number, load in enumerate(self.system.loads):
+            parameters = np.array([load.stiffness, load.damping, load.mass])
+            forces[..., number] = np.tensordot(parameters, u[..., number], axes=1)
+            if load.weight is not None:
+                forces[..., number] *= load.weight(fraction, side)[..., 0]
+        return forces
+
+    def _contact(self, fraction: ArrayLike, side: Side) -> FloatArray:
+        """u, u̇, ü of each load, shape (3, ..., p)."""
+        x, period = np.asarray(fraction, dtype=float), self.system.period
+        q, v, a = (part(x, side) for part in (self.displacements, self.velocities, self.accelerations))
+        found = -known_errors(self.system, x, side)
+        for number, load in enumerate(self.system.loads):
+            phi = load.shape(x, side)
+            for order, part in enumerate((q, v, a)):
+                found[order, ..., number] += (phi * part).sum(axis=-1)
+            if load.rate == "total":
+                rate, bend = load.slope(x, side) / period, load.curvature(x, side) / period**2
+                found[1, ..., number] += (rate * q).sum(axis=-1)
+                found[2, ..., number] += (2.0 * rate * v + bend * q).sum(axis=-1)
+        return found
+
+    def mean(self, function: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Mean over the period of a function of the fractions, (m,) to (m, ...), such as a square of the motion."""
+        values = function(self.instants)
+        return np.asarray(np.tensordot(self.weights, values, axes=1), dtype=float)
+
+    def harmonics(self, order: int) -> ComplexArray:
+        """Complex amplitudes X_s of the state, X = Re Σ X_s e^{isωt}, s = 0 ... order, shape (order + 1, 2n)."""
+        turning = np.exp(-2j * np.pi * np.outer(np.arange(order + 1), self.instants))
+        amplitudes = 2.0 * (turning * self.weights) @ self.state(self.instants)
+        amplitudes[0] /= 2.0
+        return np.asarray(amplitudes, dtype=complex)
+
+    @property
+    def instants(self) -> FloatArray:
+        """Gauss nodes of all panels, fractions of the period: dense enough for means, and nearly for extremes."""
+        return self._rule[0]
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weights of the :attr:`instants` in a mean over the period."""
+        return self._rule[1]
+
+    @cached_property
+    def _rule(self) -> tuple[FloatArray, FloatArray]:
+        x, weights = legendre.leggauss(2 * self.state.degree + 2)
+        lengths = self.state.lengths[:, np.newaxis]
+        instants = self.state.breakpoints[:, np.newaxis] + lengths * (1.0 + x) / 2.0
+        return instants.ravel(), (lengths * weights / 2.0).ravel()
+
+
+def steady_response(
+    system: PeriodicSystem, method: Method | None = None, *, allow_unstable: bool = False
+) -> SteadyResponse:
+    """Find the motion of a system that repeats itself each period under its forces and transmission errors.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    method : Method, optional
+        :class:`facegear.floquet.multipliers.Collocation` or :class:`facegear.floquet.radau.Radau`, which know the
+        motion along the period. If left out, the first where it applies, else the second.
+    allow_unstable : bool
+        Whether a motion is wanted that any disturbance would leave.
+
+    Returns
+    -------
+    SteadyResponse
+        All zero for a system without forces and transmission errors.
+
+    Raises
+    ------
+    ValueError
+        If the system is unstable and that is not asked for, or the method knows the end of the period only.
+    ArithmeticError
+        If a multiplier is so close to 1 that no motion repeats itself, or none that double precision could tell; or if
+        panels do not resolve the motion.
+
+    Examples
+    --------
+    An oscillator under a constant force rests at force over stiffness.
+
+    >>> pushed = PeriodicSystem([[1.0]], [[0.1]], [[4.0]], (), 2.0, force=PiecewiseChebyshev.constant([2.0]))
+    >>> steady_response(pushed).displacements([0.0, 0.3]).round(12)
+    array([[0.5],
+           [0.5]])
+    """
+    return with_method(method, lambda chosen: _steady(system, chosen, allow_unstable), _OTHERWISE)
+
+
+def _steady(system: PeriodicSystem, method: Method, allow_unstable: bool) -> SteadyResponse:
+    if not isinstance(method, FollowsMotion):
+        raise ValueError(
+            "method must be Collocation or Radau for a response, which know the motion along the period, got "
+            f"{method!r}"
+        )
+    family, instants = Family([system]), np.zeros(0)
+    for _ in range(_MOST_ROUNDS):
+        panels = method.motion_panels(system, instants.tolist())
+        response, unresolved = _on_panels(family, panels, allow_unstable)
+        if not unresolved.any():
+            return response
+        middles = (panels.edges[:-1] + panels.edges[1:]) / 2.0
+        instants = np.concatenate([panels.edges[1:-1], middles[unresolved]])
+    raise ArithmeticError(f"{panels.steps.shape[0]} panels do not resolve the response to {_TOLERANCE:.1g}")
+
+
+def _on_panels(
+    family: Family, panels: MotionPanels, allow_unstable: bool
+) -> tuple[SteadyResponse, FloatArray]:
+    """Steady response on some panels, and which of them are too long for it."""
+    (system,), size = family.systems, 2 * family.size
+    whole, moved = np.eye(size), np.zeros(size)
+    into = _jumps(system, panels.edges[:-1])
+    for jump, step, offset in zip(into, panels.steps, panels.offsets, strict=True):
+        moved = step @ (jump @ moved) + offset
+        whole = step @ (jump @ whole)
+    scaled = family.scale @ whole @ family.inverse_scale
+    if not np.isfinite(scaled).all():
+        raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
+    radius = float(np.abs(np.linalg.eigvals(scaled)).max())
+    if radius > 1.0 + _BEYOND and not allow_unstable:
+        raise ValueError(
+            f"system must be stable for a steady response, got max|λ| = {radius:.9g}; allow_unstable=True finds the "
+            "motion that any disturbance would leave"
+        )
+    away = np.eye(size) - scaled
+    smallest = float(np.linalg.svd(away, compute_uv=False)[-1])
+    condition = max(1.0, float(np.linalg.norm(scaled, 2))) / max(smallest, np.finfo(float).tiny)
+    if condition > _LOST:
+        raise ArithmeticError(
+            f"a multiplier is so close to 1 that no response is known (condition {condition:.2g}): a rigid-body "
+            "motion, or an undamped resonance"
+        )
+    state = family.inverse_scale @ np.linalg.solve(away, family.scale @ moved)
+    starts = []
+    for jump, step, offset in zip(into, panels.steps, panels.offsets, strict=True):
+        starts.append(jump @ state)
+        state = step @ starts[-1] + offset
+    inside = panels.inside(np.array(starts))
+    coefficients = (
+        np.linalg.inv(chebyshev.chebvander(2.0 * panels.nodes - 1.0, panels.nodes.size - 1)) @ inside
+    )
+    response = SteadyResponse(system, PiecewiseChebyshev(panels.edges[:-1], coefficients), radius, condition)
+    sizes = np.abs(coefficients @ family.scale.T)
+    unresolved = sizes[:, -2:].max(axis=(1, 2)) > _TOLERANCE * sizes.max()
+    return response, unresolved
+
+
+def _jumps(system: PeriodicSystem, starts: FloatArray) -> list[FloatArray]:
+    """Jumps of the state at the starts of panels, unit matrices where there are none."""
+    matrices = [np.eye(2 * system.size)] * starts.size
+    for at, jump in system.state_jumps():
+        matrices[int(np.abs(starts - at).argmin())] = jump
+    return matrices
