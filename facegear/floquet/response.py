@@ -79,12 +79,13 @@ class SteadyResponse:
 
     def contact_displacements(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Displacement u = φᵀq − e of each load at fractions of the period, shape (..., p)."""
-        return self._contact(fraction, side)[0]
+        displacements: FloatArray = self._contact(fraction, side)[0]
+        return displacements
 
     def contact_forces(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Force w (k u + c u̇ + m ü) of each load at fractions of the period, shape (..., p)."""
         u = self._contact(fraction, side)
-        forces = np.zeros_like(u[0])
+        forces: FloatArray = np.zeros(u.shape[1:])
         for number, load in enumerate(self.system.loads):
             parameters = np.array([load.stiffness, load.damping, load.mass])
             forces[..., number] = np.tensordot(parameters, u[..., number], axes=1)
