@@ -28,7 +28,7 @@ from scipy.optimize.elementwise import find_root
 
 from facegear.geometry.recut import Shaper
 from facegear.support.types import FloatArray
-from facegear.symbolic import meshing
+from facegear.symbolic import twins
 
 # No flank reaches a local pressure angle near 90°: u_s would be infinite there.
 _STEEPEST = 1.5
@@ -146,18 +146,14 @@ class ContactRegion:
     @property
     def cone_cotangent(self) -> float:
         """Cot γ_s of the shaper's pitch cone (3-16)."""
-        s = meshing
-        function = s.compiled(s.pointing_cone_angle_cotangent, s.m_2s, s.gamma)
-        return float(function(self.speed_ratio, self.shaft_angle))
+        return float(twins.pointing_cone_angle_cotangent(self.speed_ratio, self.shaft_angle))
 
     def radial_position(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
         """−y_p [m], along the gear plane in the plane of both axes."""
         return -self._components(alpha, roll)[1]
 
     def _components(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
-        s = meshing
-        function = s.compiled(s.contact_point, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
-        return function(alpha, roll, self.base_radius, self.speed_ratio, self.shaft_angle)
+        return twins.contact_point(alpha, roll, self.base_radius, self.speed_ratio, self.shaft_angle)
 
     def depth(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
         """Distance from the shaper's axis of the cone through a point that is parallel to the tooth top [m].
@@ -169,9 +165,7 @@ class ContactRegion:
 
     def line_speed(self, alpha: ArrayLike, roll: ArrayLike) -> Any:
         """Arc length of the contact line per local pressure angle at constant φs [m]."""
-        s = meshing
-        function = s.compiled(s.contact_line_speed, s.alpha, s.theta_s, s.r_bs, s.m_2s, s.gamma)
-        return function(alpha, roll, self.base_radius, self.speed_ratio, self.shaft_angle)
+        return twins.contact_line_speed(alpha, roll, self.base_radius, self.speed_ratio, self.shaft_angle)
 
     # --- corners -----------------------------------------------------------------------------------------
 
