@@ -53,4 +53,6 @@ def test_a_growth_rate_loads_what_it_takes_and_no_more():
     done = subprocess.run([sys.executable, "-c", A_GROWTH_RATE], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.split())
     assert {"facegear.symbolic.twins", "facegear.floquet.multipliers", "scipy.linalg"} <= loaded
-    assert not {"sympy", "mpmath", "xarray", "pandas", "matplotlib", "joblib", "dask", "tqdm", "yaml"} & loaded
+    assert (
+        not {"sympy", "mpmath", "xarray", "pandas", "matplotlib", "joblib", "dask", "tqdm", "yaml"} & loaded
+    )
