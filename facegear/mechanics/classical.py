@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -519,7 +520,7 @@ class GearPair:
         )
 
 
-def _two(name: str, values: tuple[float, float], unit: str) -> tuple[float, float]:
+def _two(name: str, values: Any, unit: str) -> tuple[float, float]:
     """Check one value for each of both coordinates."""
     listed = isinstance(values, list | tuple) or (isinstance(values, np.ndarray) and values.ndim == 1)
     if not listed or len(values) != 2:

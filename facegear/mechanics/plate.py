@@ -418,7 +418,7 @@ def _null_vector(root: float, n: int, bore_ratio: float, poissons_ratio: float) 
 
 
 @lru_cache(maxsize=64)
-def _trial_functions(bore_ratio: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _trial_functions(bore_ratio: float) -> tuple[FloatArray, ...]:
     """Trial functions at the nodes of :func:`plate_quadrature`, and two derivatives; the same for every n.
 
     Those with Legendre polynomials as second derivatives and clamped at the bore, each of shape (terms, nodes). They
@@ -429,8 +429,9 @@ def _trial_functions(bore_ratio: float) -> tuple[FloatArray, FloatArray, FloatAr
     second = np.eye(_RITZ_TERMS)
     first = legendre.legint(second, m=1, lbnd=-1, scl=half)
     zeroth = legendre.legint(first, m=1, lbnd=-1, scl=half)
-    value, slope, curvature = (legendre.legval(points, series) for series in (zeroth, first, second))
-    return value, slope, curvature
+    return tuple(
+        np.asarray(legendre.legval(points, series), dtype=float) for series in (zeroth, first, second)
+    )
 
 
 def _ritz_roots(bore_ratio: float, poissons_ratio: float, nodal_circles: int, n: int) -> FloatArray:
