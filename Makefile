@@ -10,7 +10,7 @@ export MKL_NUM_THREADS := 1
 export PYTHONDONTWRITEBYTECODE :=
 
 .DEFAULT_GOAL := help
-.PHONY: help environment book pdf chapter drive test test-slow test-kernel test-lowest test-book lint format explorer bench references clean
+.PHONY: help environment book pdf chapter drive test test-slow test-kernel test-lowest test-book lint format twins explorer bench references clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -59,6 +59,9 @@ format: environment ## put code and notebooks into their committed form
 	$(PYTHON) -m ruff check --fix .
 	$(PYTHON) -m ruff format .
 	$(PYTHON) -m nbstripout --keep-id --extra-keys '$(STRIPPED)' notebooks/*.ipynb
+
+twins: environment ## write what computations take from the derivations anew
+	@$(PYTHON) tools/write_twins.py
 
 explorer: environment ## open the live explorer in a browser (Voilà on this machine)
 	@$(PYTHON) -m voila notebooks/explorer.ipynb

@@ -1,7 +1,7 @@
 """Time `facegear.stability_map` in a process that has not computed anything yet; prints one line of JSON.
 
 Run from the repository root: ``python -m benchmarks.first_call SIZE WORKERS``. Fig. 4.4(a), one pinion, with all that a
-user of a new drive pays for: imports, the derivation of the meshing equations by SymPy, the path of contact.
+user of a new drive pays for: imports, radial modes, the path of contact.
 """
 
 import json

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from facegear.floquet.labels import combination
 from facegear.floquet.models import Coordinate, Model, require_model
 from facegear.floquet.multipliers import transition_matrix
-from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.maps.tracing import Tongue, tongues
 from facegear.support.parameters import positive
 from facegear.support.types import ComplexArray, FloatArray
@@ -87,11 +87,12 @@ def cell_detail(model: Model, speed: float) -> CellDetail:
     Raises
     ------
     TypeError, ValueError
-        If `speed` is not a number greater than 0.
+        If `speed` is not a number greater than 0, or the model does not name each of its coordinates.
     """
     require_model(model)
     speed = positive("speed", speed, "rad/s")
     system = model.system(speed)
+    _require_coordinates(model, system)
     values, vectors = np.linalg.eig(transition_matrix(system))
     # Of a conjugate pair rounding alone would decide.
     order = np.lexsort((-values.imag, -np.abs(values).round(12)))
@@ -123,6 +124,17 @@ def cell_detail(model: Model, speed: float) -> CellDetail:
         deflections={name: _labelled(part, largest) for name, part in deflections.items()},
         history=history,
     )
+
+
+def _require_coordinates(model: Model, system: PeriodicSystem) -> None:
+    """Refuse a model that does not say what each row of its matrices is."""
+    require_system(system)
+    named = getattr(model, "coordinates", None)
+    wanted = f"model must have coordinates, one floquet.models.Coordinate for each of its {system.size} rows"
+    if not isinstance(named, list | tuple) or not all(isinstance(item, Coordinate) for item in named):
+        raise TypeError(f"{wanted}, got {named!r}")
+    if len(named) != system.size:
+        raise ValueError(f"{wanted}, got {len(named)}")
 
 
 def _tongue_at(model: Model, speed: float) -> tuple[Tongue | None, tuple[float, float]]:

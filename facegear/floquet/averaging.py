@@ -187,7 +187,7 @@ def unstable_intervals(block: ResonanceBlock, frequency: float) -> Iterator[Inte
 
 def _pair_intervals(block: ResonanceBlock) -> Iterator[Interval]:
     """Unstable interval of the parametric frequency of a 2 × 2 block in closed form."""
-    from facegear.symbolic.hsu import border_function
+    from facegear.symbolic.criterion import border_function
 
     s = block.shifts[0] - block.shifts[1]
     distance = float(block.signed_frequencies[0] - block.signed_frequencies[1])

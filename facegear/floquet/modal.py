@@ -114,7 +114,7 @@ class StandardForm:
         ValueError
             If an argument is outside these ranges.
         """
-        from facegear.symbolic import hsu as symbolic
+        from facegear.symbolic import criterion as symbolic
 
         size = len(self.frequencies)
         if kind not in ("sum", "difference"):

@@ -23,7 +23,7 @@ from facegear.geometry.flanks import (
 )
 from facegear.support import parameters
 from facegear.support.types import FloatArray
-from facegear.symbolic import meshing
+from facegear.symbolic import twins
 
 ADDENDUM = 1.0  # pinion and face gear, in modules
 SHAPER_ADDENDUM = 1.25
@@ -159,8 +159,7 @@ class Drive:
     @cached_property
     def space_half_angle(self) -> float:
         """θ_0s, half angle of the pinion's tooth space on the base circle [rad] (3-1)."""
-        function = meshing.compiled(meshing.space_half_angle, meshing.N_s, meshing.alpha_c)
-        return float(function(self.pinion_teeth, self.pressure_angle))
+        return float(twins.space_half_angle(self.pinion_teeth, self.pressure_angle))
 
     def _roll_angle(self, radius: float) -> float:
         """Roll angle θs of the involute at a circle of the shaper [rad] (3-12)."""
@@ -184,8 +183,7 @@ class Drive:
     @property
     def cone_cotangent(self) -> float:
         """Cot γ_s (3-16), so that u_s = r_bs cot γ_s / cos α_s wherever f = 0."""
-        function = meshing.compiled(meshing.pointing_cone_angle_cotangent, meshing.m_2s, meshing.gamma)
-        return float(function(self.speed_ratio, self.shaft_angle))
+        return float(twins.pointing_cone_angle_cotangent(self.speed_ratio, self.shaft_angle))
 
     # --- limits of the face-gear tooth ----------------------------------------------------------------------
 
@@ -196,8 +194,8 @@ class Drive:
         The negative one lies on the other branch of the meshing surface; `undercut_root` is the physical one.
         """
         m, gamma_m = self.speed_ratio, math.pi - self.shaft_angle
-        function = meshing.compiled(meshing.undercut_coefficients, meshing.p, meshing.q, meshing.theta_star)
-        values = function(m * math.sin(gamma_m), 1.0 - m * math.cos(gamma_m), self.shaper_tip_roll)
+        p, q = m * math.sin(gamma_m), 1.0 - m * math.cos(gamma_m)
+        values = twins.undercut_coefficients(p, q, self.shaper_tip_roll)
         polynomial = np.polynomial.Polynomial(np.array(values, dtype=np.float64)[::-1])
         roots = polynomial.roots()
         real = np.sort(roots[np.abs(roots.imag) < 1e-9 * np.abs(roots)].real)
@@ -215,30 +213,24 @@ class Drive:
     @cached_property
     def inner_limit(self) -> float:
         """L1 along the shaper's axis, where undercutting ends [m] (3-13)."""
-        s = meshing
-        function = s.compiled(s.inner_limit, s.t, s.p, s.q, s.r_bs, s.r_ds, s.gamma)
         m, gamma_m = self.speed_ratio, math.pi - self.shaft_angle
         p, q = m * math.sin(gamma_m), 1.0 - m * math.cos(gamma_m)
         t = self.undercut_root
-        return float(function(t, p, q, self.base_radius, self.dedendum_radius, self.shaft_angle))
+        return float(twins.inner_limit(t, p, q, self.base_radius, self.dedendum_radius, self.shaft_angle))
 
     @cached_property
     def pointing_angle(self) -> float:
         """α_p, the pressure angle α_s of the pointing section [rad] (3-15)."""
-        s = meshing
-        function = s.compiled(s.pointing_condition, s.alpha, s.theta_0s, s.r_top, s.r_bs)
         arguments = (self.space_half_angle, self.tooth_top_distance, self.base_radius)
         # The condition falls to a minimum at cos α_s = r_bs/r_top, if there is one, and rises through the root.
         lowest = math.acos(min(1.0, self.base_radius / self.tooth_top_distance))
-        return root(lambda angle: float(function(angle, *arguments)), lowest, _RIGHT_ANGLE)
+        return root(lambda angle: float(twins.pointing_condition(angle, *arguments)), lowest, _RIGHT_ANGLE)
 
     @cached_property
     def outer_limit(self) -> float:
         """L2 along the shaper's axis, where the tooth becomes pointed [m] (3-14)."""
-        s = meshing
-        function = s.compiled(s.outer_limit, s.alpha, s.r_bs, s.r_top, s.m_2s, s.gamma)
         alpha, top = self.pointing_angle, self.tooth_top_distance
-        return float(function(alpha, self.base_radius, top, self.speed_ratio, self.shaft_angle))
+        return float(twins.outer_limit(alpha, self.base_radius, top, self.speed_ratio, self.shaft_angle))
 
     @property
     def inner_radius(self) -> float:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from facegear.geometry.contact_lines import ContactRegion
 from facegear.support import parameters
 from facegear.support.types import FloatArray
-from facegear.symbolic import meshing
+from facegear.symbolic import twins
 
 
 def _mirror(flank: int) -> FloatArray:
@@ -25,7 +25,7 @@ def _mirror(flank: int) -> FloatArray:
     return np.array([float(flank), 1.0, 1.0])
 
 
-def _rotate(matrix_entries: list[Any], points: ArrayLike) -> FloatArray:
+def _rotate(matrix_entries: tuple[Any, ...], points: ArrayLike) -> FloatArray:
     """Multiply points by rotation matrices given as nine arrays, row by row."""
     entries = np.stack(np.broadcast_arrays(*matrix_entries), axis=-1)
     matrices = entries.reshape(*entries.shape[:-1], 3, 3)
@@ -35,33 +35,27 @@ def _rotate(matrix_entries: list[Any], points: ArrayLike) -> FloatArray:
 
 def shaper_points(region: ContactRegion, position: ArrayLike, roll: ArrayLike) -> FloatArray:
     """Points of flank 1 of the shaper in Γs (3-2), shape (..., 3) [m], from u_s [m] and θs [rad]."""
-    s = meshing
-    function = s.compiled(s.shaper_surface, s.u_s, s.theta_s, s.theta_0s, s.r_bs)
-    components = function(position, roll, region.space_half_angle, region.base_radius)
+    components = twins.shaper_surface(position, roll, region.space_half_angle, region.base_radius)
     return np.stack(np.broadcast_arrays(*components), axis=-1)
 
 
 def shaper_to_gear(region: ContactRegion, points: ArrayLike, rotation: ArrayLike) -> FloatArray:
     """Carry points (..., 3) from Γs to Γ2 at rotations φs [rad] that broadcast against (...) (3-4, 3-5)."""
-    s = meshing
-    function = s.compiled(s.rotation_2s, s.phi_s, s.phi_2, s.gamma_m)
     phi = np.asarray(rotation, dtype=np.float64)
-    return _rotate(function(phi, region.speed_ratio * phi, math.pi - region.shaft_angle), points)
+    return _rotate(twins.rotation_2s(phi, region.speed_ratio * phi, math.pi - region.shaft_angle), points)
 
 
 def shaper_to_fixed(region: ContactRegion, points: ArrayLike, rotation: ArrayLike) -> FloatArray:
     """Carry points (..., 3) from Γs to Γp at rotations φs [rad] that broadcast against (...)."""
-    s = meshing
-    function = s.compiled(s.rotation_2s, s.phi_s, s.phi_2, s.gamma_m)
     phi = np.asarray(rotation, dtype=np.float64)
-    return _rotate(function(phi, 0.0, math.pi - region.shaft_angle), points)
+    return _rotate(twins.rotation_2s(phi, 0.0, math.pi - region.shaft_angle), points)
 
 
 def gear_to_fixed(region: ContactRegion, points: ArrayLike, rotation: ArrayLike) -> FloatArray:
     """Carry points (..., 3) from Γ2 to Γp at rotations φs [rad] that broadcast against (...)."""
-    function = meshing.compiled(meshing.rotation_2p, meshing.phi_2)
     # The inverse of M_2p(φ2) is M_2p(−φ2).
-    return _rotate(function(-region.speed_ratio * np.asarray(rotation, dtype=np.float64)), points)
+    phi = np.asarray(rotation, dtype=np.float64)
+    return _rotate(twins.rotation_2p(-region.speed_ratio * phi), points)
 
 
 @dataclass(frozen=True)

@@ -42,8 +42,8 @@ def phase_split(drive: Drive, pinion_angles: ArrayLike) -> PhaseSplit:
     ----------
     drive : Drive
     pinion_angles : array_like, shape S
-        θ_c of each pinion from the first one [rad], any real numbers. An angle within 1e-9 of a pitch of a whole
-        number of teeth counts as whole: 120° in radians is not exact.
+        θ_c of each pinion from the first one [rad], within one turn, -2π to 2π. An angle within 1e-9 of a pitch of a
+        whole number of teeth counts as whole: 120° in radians is not exact.
 
     Returns
     -------
@@ -52,9 +52,15 @@ def phase_split(drive: Drive, pinion_angles: ArrayLike) -> PhaseSplit:
     Raises
     ------
     TypeError, ValueError
-        Not numeric or not finite.
+        Not numeric, not finite, or beyond one turn.
     """
     angles = parameters.finite_array("pinion_angles", pinion_angles, "rad")
+    beyond = np.abs(angles) > 2.0 * math.pi * (1.0 + _WHOLE_PITCH)
+    if np.any(beyond):
+        raise ValueError(
+            f"pinion_angles must lie in [-2π, 2π] rad, within one turn, got {float(angles[beyond][0])!r} rad (degrees? "
+            "np.radians converts them)"
+        )
     pitches = angles / drive.angular_pitch
     nearest = np.rint(pitches)
     whole = np.abs(pitches - nearest) < _WHOLE_PITCH

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import root as solve
 
 from facegear.support.types import FloatArray
-from facegear.symbolic import meshing
+from facegear.symbolic import twins
 
 # Rotations since generation between which roots are looked for. None of them is 0, where every point touches.
 _TURNS = np.linspace(-1.5, 1.5, 288)
@@ -96,15 +96,12 @@ class Shaper:
 
     @cached_property
     def _cone_cotangent(self) -> float:
-        s = meshing
-        function = s.compiled(s.pointing_cone_angle_cotangent, s.m_2s, s.gamma)
-        return float(function(self.speed_ratio, self.shaft_angle))
+        return float(twins.pointing_cone_angle_cotangent(self.speed_ratio, self.shaft_angle))
 
     def _place(self, alpha: FloatArray, roll: FloatArray, turn: FloatArray) -> Place:
         """Where points of the flank are in the shaper's fixed axes, a rotation δ after they were generated."""
-        s = meshing
-        function = s.compiled(s.returned_point, s.alpha, s.theta_s, s.delta, s.r_bs, s.m_2s, s.gamma)
-        x, y, u = function(alpha, roll, turn, self.base_radius, self.speed_ratio, self.shaft_angle)
+        fixed = (self.base_radius, self.speed_ratio, self.shaft_angle)
+        x, y, u = twins.returned_point(alpha, roll, turn, *fixed)
         radius = np.hypot(x, y)
         there = np.sqrt(np.maximum((radius / self.base_radius) ** 2 - 1.0, 0.0))
         return Place(radius, np.arctan2(x, -y), u, there)

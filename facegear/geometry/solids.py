@@ -12,7 +12,7 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.flanks import gear_to_fixed, shaper_points, shaper_to_fixed, shaper_to_gear
 from facegear.support.parameters import integer_at_least
 from facegear.support.types import FloatArray
-from facegear.symbolic import meshing
+from facegear.symbolic import twins
 
 
 @dataclass(frozen=True)
@@ -205,8 +205,7 @@ def _profile(
             top = root(lambda roll: _half_thickness(region, radius, roll), top, bottom)
     roll = top + (bottom - top) * fraction
     place, rotation = _flank_points(region, radius, roll)
-    s = meshing
-    normal = s.compiled(s.shaper_normal, s.theta_s, s.theta_0s)(roll, region.space_half_angle)
+    normal = twins.shaper_normal(roll, region.space_half_angle)
     turned = shaper_to_gear(region, np.stack(np.broadcast_arrays(*normal), axis=-1), rotation)
     # (3-3) points out of the shaper's tooth space, that is into the tooth.
     return place, -turned / np.linalg.norm(turned, axis=-1, keepdims=True)

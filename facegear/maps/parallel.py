@@ -19,6 +19,7 @@ from typing import Any, Literal, Protocol, TypeVar
 import numpy as np
 
 from facegear.floquet.periodic import PeriodicSystem
+from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
 from facegear.support.types import FloatArray
 
@@ -126,6 +127,7 @@ def in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]], jo
     """
     from joblib import Parallel, delayed
 
+    jobs = number_of_workers("jobs", jobs)
     return list(Parallel(n_jobs=jobs)(delayed(_on_one_thread)(function, *arguments) for arguments in work))
 
 

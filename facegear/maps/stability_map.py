@@ -37,7 +37,7 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.stepping import Family
 from facegear.maps.parallel import Workers, computed, parts_of
-from facegear.support.parameters import finite_array, rpm
+from facegear.support.parameters import finite_array, number_of_workers, rpm
 from facegear.support.types import FloatArray
 
 # Columns of a map that are computed, and kept on disk, together.
@@ -114,6 +114,7 @@ def stability_map(
     require_model(model)
     speeds = checked_speeds(speeds)
     values = _checked_values(values)
+    jobs = number_of_workers("jobs", jobs)
     name = parameter_path(model, parameter)[-1]
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
     first = [model.system(float(speeds[0])) for model in sweep.models]

@@ -23,7 +23,7 @@ from facegear.floquet.periodic import PeriodicSystem, rigid_motions
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
-from facegear.support.parameters import ascending, finite_array, within
+from facegear.support.parameters import ascending, finite_array, number_of_workers, within
 from facegear.support.types import FloatArray
 
 _KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -230,6 +230,7 @@ def borders(
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"values must list at least one value of the parameter, got shape {array.shape}")
     parameter_path(model, parameter)
+    jobs = number_of_workers("jobs", jobs)
     low_high = ascending("speeds", speeds, "rad/s")
     searches = [
         _Search(replace_parameter(model, parameter, value), low_high, method, threshold)

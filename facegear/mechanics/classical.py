@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -129,8 +130,13 @@ class Hill:
             damping_ratio=within("damping_ratio", self.damping_ratio, *_DAMPING_RATIOS),
             natural_frequency=positive("natural_frequency", self.natural_frequency, "rad/s"),
         )
-        # A wave that is none is refused here, not at the first frequency.
-        self._load()
+        if not isinstance(self.wave, PiecewiseChebyshev):
+            raise TypeError(
+                "wave must be a PiecewiseChebyshev over the fraction of the period, as "
+                f"PiecewiseChebyshev.fit(lambda x, piece: np.cos(2 * np.pi * x), [0.0]), got {self.wave!r}"
+            )
+        if self.wave.components != 1:
+            raise ValueError(f"wave must have one component, got {self.wave.components}")
 
     def _load(self) -> ContactLoad:
         """Return the spring that varies: stiffness ε ω0², weight w."""
@@ -514,7 +520,10 @@ class GearPair:
         )
 
 
-def _two(name: str, values: tuple[float, float], unit: str) -> tuple[float, float]:
+def _two(name: str, values: Any, unit: str) -> tuple[float, float]:
     """Check one value for each of both coordinates."""
+    listed = isinstance(values, list | tuple) or (isinstance(values, np.ndarray) and values.ndim == 1)
+    if not listed or len(values) != 2:
+        raise ValueError(f"{name} must be two numbers in {unit}, one for each coordinate, got {values!r}")
     first, second = (positive(f"{name}[{i}]", values[i], unit) for i in (0, 1))
     return first, second

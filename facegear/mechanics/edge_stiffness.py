@@ -30,6 +30,8 @@ Following = Literal["follower", "dead"]
 # K_f as a series in the square of the speed, from 0 to this speed [rad/s] or 2, 4, 8 ... times it.
 _LOWEST_TOP = 128.0
 _SERIES_DEGREE = 8
+# Mean shear stress at the bore over Young's modulus that a driving force may have: steel breaks at a thousandth.
+_MOST_SHEAR = 100.0
 
 
 def complete_harmonics(body: Body) -> int:
@@ -259,6 +261,23 @@ class DrivingForce:
     def newtons(self, drive: Drive) -> float:
         """Force at the pinion's pitch circle, F_t = P/(Ω1 r_p) [N] (4-21)."""
         return self.power / (self.pinion_speed * drive.pitch_radius)
+
+    def require(self, body: Body) -> None:
+        """Refuse a force that no body bears, such as by a power or a speed in another unit.
+
+        Raises
+        ------
+        ValueError
+            If the mean shear stress round the bore, F_t R2/(2π b² h), passes a hundred times Young's modulus.
+        """
+        force, bore = self.newtons(body.drive), 2.0 * math.pi * body.bore_radius**2 * body.thickness
+        stress, most = force * body.outer_radius / bore, _MOST_SHEAR * body.material.youngs_modulus
+        if stress > most:
+            raise ValueError(
+                f"power must be at most {self.power * most / stress:.3g} W at pinion_speed={self.pinion_speed!r} rad/s "
+                f"on this body, got {self.power!r} W: a force of {force:.3g} N, whose shear stress at the bore is "
+                f"{stress / body.material.youngs_modulus:.3g} times Young's modulus (another unit of power or speed?)"
+            )
 
     def stiffness(self, body: Body, speed: float, angles: tuple[float, ...]) -> FloatArray:
         """K_f of equal forces at several angles [1/s²].

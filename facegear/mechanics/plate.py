@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -174,10 +174,17 @@ def plate_quadrature(bore_ratio: float) -> tuple[FloatArray, FloatArray]:
     nodes, weights : ndarray, shape (80,)
         Radii x [-] and weights with the factor x of the area element [-].
     """
-    points, weights = legendre.leggauss(_QUADRATURE_NODES)
+    points, weights = _gauss_legendre()
     half = (1.0 - bore_ratio) / 2
     x = bore_ratio + half * (points + 1.0)
     return x, half * weights * x
+
+
+@cache
+def _gauss_legendre() -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights on [-1, 1]; an eigenproblem, of which every disk wants a dozen."""
+    points, weights = legendre.leggauss(_QUADRATURE_NODES)
+    return np.asarray(points), np.asarray(weights)
 
 
 def centrifugal_stress(
@@ -410,21 +417,30 @@ def _null_vector(root: float, n: int, bore_ratio: float, poissons_ratio: float) 
     return np.asarray(np.linalg.svd(matrix)[2][-1] / scales)
 
 
-def _ritz_roots(bore_ratio: float, poissons_ratio: float, nodal_circles: int, n: int) -> FloatArray:
-    """Rayleigh-Ritz estimates of k for 0, ..., nodal_circles, ascending, shape (nodal_circles + 1,).
+@lru_cache(maxsize=64)
+def _trial_functions(bore_ratio: float) -> tuple[FloatArray, ...]:
+    """Trial functions at the nodes of :func:`plate_quadrature`, and two derivatives; the same for every n.
 
-    The trial functions are those with Legendre polynomials as second derivatives and clamped at the bore.
-    They make the stiffness matrix well conditioned; as the eigenvalue sought is 1/k⁴, the lowest modes come
-    out with nearly full accuracy.
+    Those with Legendre polynomials as second derivatives and clamped at the bore, each of shape (terms, nodes). They
+    make the stiffness matrix well conditioned.
     """
-    x, weights = plate_quadrature(bore_ratio)
     half = (1.0 - bore_ratio) / 2
-    points = (x - bore_ratio) / half - 1.0
+    points = (plate_quadrature(bore_ratio)[0] - bore_ratio) / half - 1.0
     second = np.eye(_RITZ_TERMS)
     first = legendre.legint(second, m=1, lbnd=-1, scl=half)
     zeroth = legendre.legint(first, m=1, lbnd=-1, scl=half)
-    value, slope, curvature = (legendre.legval(points, series) for series in (zeroth, first, second))
+    return tuple(
+        np.asarray(legendre.legval(points, series), dtype=float) for series in (zeroth, first, second)
+    )
 
+
+def _ritz_roots(bore_ratio: float, poissons_ratio: float, nodal_circles: int, n: int) -> FloatArray:
+    """Rayleigh-Ritz estimates of k for 0, ..., nodal_circles, ascending, shape (nodal_circles + 1,).
+
+    As the eigenvalue sought is 1/k⁴, the lowest modes come out with nearly full accuracy.
+    """
+    x, weights = plate_quadrature(bore_ratio)
+    value, slope, curvature = _trial_functions(bore_ratio)
     hoop = slope / x - n**2 * value / x**2
     twist = n * (slope / x - value / x**2)
     # Strain energy of bending over π D: (κ_r + κ_θ)² - 2 (1 - ν)(κ_r κ_θ - κ_rθ²).

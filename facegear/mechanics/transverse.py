@@ -152,6 +152,8 @@ class Transverse:
                 raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
         if self.force is not None and not isinstance(self.force, DrivingForce):
             raise TypeError(f"force must be a DrivingForce or None, got {self.force!r}")
+        if self.force is not None:
+            self.force.require(self.body)
         if self.contact.sharing == "each":
             raise ValueError(
                 f'sharing must be "centroid" or "mean" for one load a pinion, got {self.contact.sharing!r}'

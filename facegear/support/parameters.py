@@ -197,6 +197,20 @@ def integer_within(name: str, value: Any, lowest: int, highest: int) -> int:
     return number
 
 
+def number_of_workers(name: str, value: Any) -> int:
+    """Check a number of workers as joblib takes it: 1 or more, or -1 for all processors, -2 for all but one.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Not an integer, or 0.
+    """
+    number = whole_number(name, value, ": 1 or more workers, or -1 for all processors")
+    if number == 0:
+        raise ValueError(f"{name} must be 1 or more workers, or -1 for all processors, got 0")
+    return number
+
+
 def ascending(name: str, values: Any, unit: str = "") -> tuple[float, float]:
     """Check that a range is two positive, ascending numbers, and return them.
 

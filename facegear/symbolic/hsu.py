@@ -13,12 +13,10 @@ multiple of the parametric frequency ω: sω = ω_k + ω_j + Λ (sum, 2-21), sω
 sω = 2ω_k + Λ (a single frequency, the sum with k = j). The superscript s of the text is left out.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final, Literal
 
-import numpy as np
 import sympy as sp
 
 Kind = Literal["sum", "difference", "single"]
@@ -380,32 +378,8 @@ def pair_discriminant() -> tuple[sp.Expr, sp.Expr]:
 
 
 def arguments(kind: Kind) -> tuple[sp.Symbol, ...]:
-    """Arguments of ``growth_rate_function(kind)`` in order."""
+    """Symbols of ``derive(kind).growth_rate``: arguments of ``criterion.growth_rate_function(kind)`` in order."""
     coordinates = "k" if kind == "single" else "kj"
     pairs = ("kk",) if kind == "single" else ("kj", "jk")
     symbols = [OMEGA[i] for i in coordinates] + [DETUNING] + [DAMPING[i] for i in coordinates]
     return tuple(symbols + [coefficient(letter, *pair) for pair in pairs for letter in "defg"])
-
-
-@lru_cache(maxsize=3)
-def growth_rate_function(kind: Kind) -> Callable[..., Any]:
-    """NumPy twin of ``derive(kind).growth_rate``; its arguments are those of ``arguments(kind)``."""
-    function: Callable[..., Any] = sp.lambdify(arguments(kind), derive(kind).growth_rate, "numpy", cse=True)
-    return function
-
-
-@lru_cache(maxsize=1)
-def border_function() -> Callable[[float, float, float, float], tuple[float, float]]:
-    """Numeric twin of ``border_detunings``: (f⁰_kk, f⁰_jj, P, Q) to (lower, upper) Λ [rad/s], NaN if stable.
-
-    Both damping coefficients have to be positive.
-    """
-    order = (DAMPING["k"], DAMPING["j"], PRODUCT_REAL, PRODUCT_IMAG)
-    roots = sp.lambdify(order, border_detunings(), "numpy", cse=True)
-
-    def borders(f_k: float, f_j: float, real: float, imag: float) -> tuple[float, float]:
-        with np.errstate(invalid="ignore"):
-            lower, upper = roots(np.float64(f_k), np.float64(f_j), np.float64(real), np.float64(imag))
-        return float(lower), float(upper)
-
-    return borders

@@ -2,13 +2,12 @@
 
 Nothing is typed in that can be derived: the surface of the shaper and three rotations are the only input, and
 everything else (normal, relative velocity, equation of meshing, undercutting and pointing) follows from them.
-Every derivation runs on first use and is cached; `compiled` turns one into a NumPy function.
+Every derivation runs on first use and is cached; `facegear.symbolic.twins` has what computations need as functions.
 
 Coordinate systems (dissertation, Fig. 3.3): Γs turns with the shaper, Γm is its initial position, Γp is the
 initial position of the face gear, Γ2 turns with the face gear. z_s is the shaper's axis, z_2 the face gear's.
 """
 
-from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -33,32 +32,6 @@ N_s = sp.Symbol("N_s", positive=True)  # number of shaper teeth
 t = sp.Symbol("t", real=True)  # tangent of the local pressure angle
 p = sp.Symbol("p_1", positive=True)  # m_2s sin(gamma_m)
 q = sp.Symbol("p_2", positive=True)  # 1 - m_2s cos(gamma_m)
-
-
-@cache
-def compiled(derivation: Callable[[], Any], *arguments: Any) -> Callable[..., Any]:
-    """Turn a derivation into a NumPy function, once.
-
-    Parameters
-    ----------
-    derivation : callable
-        A function of this module without arguments that returns an expression or a vector.
-    *arguments : sympy.Symbol
-        Arguments of the compiled function, in order.
-
-    Returns
-    -------
-    callable
-        Takes numbers or arrays that broadcast; returns an array for an expression and a list of arrays, one a
-        component, for a vector.
-    """
-    result = derivation()
-    unknown = result.free_symbols - set(arguments)
-    if unknown:
-        raise ValueError(f"arguments must cover every symbol of {derivation.__name__}; missing {unknown}")
-    components = list(result) if isinstance(result, sp.MatrixBase) else result
-    function: Callable[..., Any] = sp.lambdify(arguments, components, modules="numpy", cse=True)
-    return function
 
 
 @cache

@@ -1,6 +1,7 @@
 """A model that no module has heard of, with a coordinate and loads of its own, goes wherever the built-in ones go."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -44,10 +45,16 @@ class SpringyTeeth:
 
     def system(self, speed):
         body, drive = self.body, self.body.drive
-        scale = np.sqrt(modal_mass(body))
         damping, stiffness = (np.pad(matrix, (0, 1)) for matrix in disk_matrices(body, speed))
         stiffness[-1, -1] = self.bearing_stiffness / self.pinion_mass
         damping[-1, -1] = 1e-6 * stiffness[-1, -1]
+        return PeriodicSystem(np.eye(len(damping)), damping, stiffness, self.loads, mesh_period(drive, speed))
+
+    @cached_property
+    def loads(self):
+        """The two of them, which do not depend on speed: fits of positions and weights are made once."""
+        body, drive = self.body, self.body.drive
+        scale = np.sqrt(modal_mass(body))
 
         def both(x, angle):
             disk = unit_shape(body.modes, x, angle) / drive.outer_radius / scale
@@ -59,7 +66,7 @@ class SpringyTeeth:
 
             return PiecewiseChebyshev.fit(weight, [0.0])
 
-        loads = [
+        return [
             ContactLoad(
                 place.shape(both),
                 stiffness=self.tooth_stiffness,
@@ -69,7 +76,6 @@ class SpringyTeeth:
             )
             for pair, place in enumerate(self.contact.places(drive))
         ]
-        return PeriodicSystem(np.eye(len(damping)), damping, stiffness, loads, mesh_period(drive, speed))
 
 
 BODY = Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=0, nodal_diameters=1)

@@ -293,3 +293,27 @@ DEPTH = Quantity("depth", "depth", 0.0, 0.9, 0.4, 0.1, parameter="depth")
 def test_wrong_descriptions_are_refused(wrong, message):
     with pytest.raises(ValueError, match=message):
         wrong()
+
+
+class Unnamed:
+    """A model that does not say, or says wrongly, what its coordinate is."""
+
+    def __init__(self, **named):
+        self.__dict__.update(named)
+
+    def system(self, speed):
+        return SQUARE.system(speed)
+
+
+@pytest.mark.parametrize(
+    ("model", "error", "says"),
+    [
+        (Unnamed(), TypeError, "each of its 1 rows, got None"),
+        (Unnamed(coordinates=("q",)), TypeError, r"each of its 1 rows, got \('q',\)"),
+        (Unnamed(coordinates=SQUARE.coordinates * 2), ValueError, "each of its 1 rows, got 2"),
+        (Unnamed(system=lambda speed: None), TypeError, "system must be a PeriodicSystem, got a NoneType"),
+    ],
+)
+def test_a_cell_of_an_incomplete_model_says_what_is_missing(model, error, says):
+    with pytest.raises(error, match=says):
+        cell_detail(model, 1.9)

@@ -37,6 +37,13 @@ def test_bad_angles_are_refused():
         phase_split(Drive(26, 130, 3.175e-3), math.inf)
 
 
+def test_degrees_are_told_from_radians():
+    drive = Drive(26, 130, 3.175e-3)
+    with pytest.raises(ValueError, match=r"pinion_angles must lie in .* got 120\.0 rad \(degrees\?"):
+        phase_split(drive, [0.0, 120.0, 240.0])
+    assert phase_split(drive, [-2 * math.pi, 2 * math.pi]).teeth.tolist() == [-130, 130]
+
+
 @pytest.mark.parametrize("shaft_angle_deg", [70.0, 90.0, 105.0])
 def test_pinions_touch_where_one_reaches_the_plane_half_way(shaft_angle_deg):
     gamma = np.radians(shaft_angle_deg)

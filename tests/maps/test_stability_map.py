@@ -19,6 +19,7 @@ from facegear.geometry.drive import Drive
 from facegear.maps import parallel
 from facegear.maps import stability_map as maps
 from facegear.maps.stability_map import stability_map
+from facegear.maps.tracing import borders
 from facegear.mechanics import cases
 from facegear.mechanics.cases import FIGURES
 from facegear.mechanics.classical import GearPair
@@ -299,6 +300,7 @@ LONG_MAP = """
 import numpy as np
 from facegear.mechanics.cases import FIGURES
 from facegear.maps.stability_map import stability_map
+from facegear.maps.tracing import borders
 from facegear.support.parameters import rad_per_s
 
 chart = stability_map(
@@ -477,3 +479,21 @@ def test_values_that_share_breakpoints_with_the_probes_only():
 def test_what_is_no_model_is_named(wrong):
     with pytest.raises(TypeError, match=r"model must have a method system\(speed\).*got (a|the class) "):
         stability_map(wrong, [50.0], "stiffness", [1.0])
+
+
+@pytest.mark.parametrize(
+    ("jobs", "error", "says"),
+    [
+        (0, ValueError, "got 0"),
+        (1.5, TypeError, "got 1.5"),
+        (True, TypeError, "got True"),
+        ("2", TypeError, "got '2'"),
+    ],
+)
+def test_a_number_of_workers_that_is_none_is_refused_first(jobs, error, says):
+    with pytest.raises(error, match=f"jobs must be .*-1 for all processors, {says}"):
+        stability_map(TRANSVERSE, [50.0, 60.0], "stiffness", [0.5], jobs=jobs)
+    with pytest.raises(error, match=f"jobs must be .*-1 for all processors, {says}"):
+        borders(TRANSVERSE, "stiffness", [0.5], (50.0, 60.0), jobs=jobs)
+    with pytest.raises(error, match=f"jobs must be .*-1 for all processors, {says}"):
+        parallel.in_processes(abs, [(1,)], jobs)

@@ -111,10 +111,20 @@ def test_symmetric_coupling_has_the_sum_and_circulation_the_difference():
         (lambda: classical.Mathieu(0.1, 1.0), "damping_ratio"),
         (lambda: classical.Mathieu(0.1, natural_frequency=-1.0), "natural_frequency"),
         (lambda: classical.Meissner(0.1, 1.0), "duty"),
-        (lambda: classical.Hill(0.1, PiecewiseChebyshev.constant([1.0, 2.0])), "weight"),
+        (
+            lambda: classical.Hill(0.1, PiecewiseChebyshev.constant([1.0, 2.0])),
+            "wave must have one component",
+        ),
         (lambda: classical.CoupledPair(0.1, circulation=1.3), "circulation"),
         (lambda: classical.CoupledPair(0.1, coupling=2.0), "coupling"),
         (lambda: classical.CoupledPair(0.1, stiffnesses=(1.0, 0.0)), r"stiffnesses\[1\]"),
+        (
+            lambda: classical.CoupledPair(0.1, stiffnesses=(1,)),
+            r"stiffnesses must be two numbers .* got \(1,\)",
+        ),
+        (lambda: classical.CoupledPair(0.1, stiffnesses=(1, 2, 3)), "stiffnesses must be two numbers"),
+        (lambda: classical.CoupledPair(0.1, stiffnesses=2.0), "stiffnesses must be two numbers .* got 2.0"),
+        (lambda: classical.GearPair(1.5, masses=None), "masses must be two numbers"),
         (lambda: classical.CoupledPair(0.1, damping=-0.1), "damping"),
         (lambda: classical.GearPair(0.9), "contact_ratio"),
         (lambda: classical.GearPair(1.5, droop=1.2), "droop"),
@@ -131,3 +141,9 @@ def test_bad_input_is_one_clear_error(build, name):
 def test_text_is_no_number():
     with pytest.raises(TypeError, match="depth"):
         classical.Mathieu("0.1")
+
+
+@pytest.mark.parametrize("wave", [None, 1.0, "cosine", np.cos, [0.0, 1.0]])
+def test_what_is_no_wave_is_refused_with_what_would_be(wave):
+    with pytest.raises(TypeError, match=r"wave must be a PiecewiseChebyshev .* as PiecewiseChebyshev\.fit"):
+        classical.Hill(0.1, wave)

@@ -148,3 +148,17 @@ def test_bad_stress_is_named():
         edge_load_stiffness(EdgeLoadStress(CASE_1, 1.0), "free")
     with pytest.raises(ValueError, match="speed must lie"):
         unit_stiffness(CASE_1, 1e5, 5, "follower", (0.0,))
+
+
+def test_a_power_that_no_body_bears_is_refused_with_one_that_is_not():
+    """What breaks any steel goes, and the largest power of a drive file at a usual speed; a slip of units does not."""
+    model = FIGURES["4.4a"].model()
+    with pytest.raises(
+        ValueError, match=r"power must be at most (\S+) W at pinion_speed=1\.0 rad/s .* got 1000000000000.0 W"
+    ) as told:
+        replace(model, force=DrivingForce(1e12, 1.0))
+    most = float(str(told.value).split()[5])
+    replace(model, force=DrivingForce(0.99 * most, 1.0))
+    with pytest.raises(ValueError, match="power must be at most"):
+        replace(model, force=DrivingForce(1.01 * most, 1.0))
+    replace(model, force=DrivingForce(1e8, 500.0))

@@ -222,12 +222,17 @@ def complex_pinions(transverse: Transverse) -> list[Pinion]:
     return pinions
 
 
+@cache
+def average_stiffness(body: Body) -> float:
+    """Mean of k_d over 0 to 1000 rpm, the denominator of (4-17), from the disk in complex exponentials."""
+    disk, middle = complex_disk(body), (body.drive.inner_radius + body.drive.outer_radius) / 2
+    return float(np.mean([disk.stiffness_at(middle, v) for v in np.linspace(0, rad_per_s(1000.0), 101)]))
+
+
 def slow_multipliers(transverse: Transverse, speed: float) -> np.ndarray:
     body, drive = transverse.body, transverse.body.drive
     disk = complex_disk(body)
-    middle = (drive.inner_radius + drive.outer_radius) / 2
-    reference = np.mean([disk.stiffness_at(middle, v) for v in np.linspace(0, rad_per_s(1000.0), 101)])
-    k_b = transverse.load.stiffness * reference
+    k_b = transverse.load.stiffness * average_stiffness(body)
     m_p = transverse.load.mass * disk.rho * np.pi * drive.pitch_radius**2 * drive.face_width
     period = 2 * np.pi / (drive.gear_teeth * speed)
     c_b = transverse.load.damping * k_b

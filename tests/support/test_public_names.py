@@ -35,3 +35,24 @@ def test_importing_it_loads_nothing_heavy():
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.split())
     assert not {"numpy", "scipy", "sympy", "matplotlib", "xarray"} & loaded
+
+
+A_GROWTH_RATE = """
+import sys
+import facegear as fg
+
+body = fg.Body(fg.Drive(26, 130, 3.175e-3), 0.03, nodal_diameters=2)
+system = fg.Transverse(body, fg.MeshLoad(stiffness=0.6, damping=3e-6, mass=1.0)).system(50.0)
+fg.growth_rate(system), fg.resonance_bands(system), body.drive.tooth_flank(3, 3)
+print(*sys.modules)
+"""
+
+
+def test_a_growth_rate_loads_what_it_takes_and_no_more():
+    """Derivations are kept as NumPy functions, and maps, figures and parallel work wait until they are asked for."""
+    done = subprocess.run([sys.executable, "-c", A_GROWTH_RATE], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert {"facegear.symbolic.twins", "facegear.floquet.multipliers", "scipy.linalg"} <= loaded
+    assert (
+        not {"sympy", "mpmath", "xarray", "pandas", "matplotlib", "joblib", "dask", "tqdm", "yaml"} & loaded
+    )

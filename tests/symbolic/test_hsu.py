@@ -4,7 +4,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from facegear.symbolic import hsu
+from facegear.symbolic import criterion, hsu
 
 KINDS = ("sum", "difference", "single")
 CHECK = settings(deadline=None, derandomize=True, max_examples=50)
@@ -162,7 +162,7 @@ def test_single_frequency_is_the_sum_of_a_frequency_with_itself():
 @pytest.mark.parametrize("kind", KINDS)
 def test_growth_rate_is_the_largest_real_part_of_the_autonomous_system(kind):
     derivation = hsu.derive(kind)
-    function = hsu.growth_rate_function(kind)
+    function = criterion.growth_rate_function(kind)
     arguments = hsu.arguments(kind)
     matrix = sp.lambdify(arguments, derivation.autonomous_matrix, "numpy")
     rng = np.random.default_rng(3)
@@ -206,7 +206,7 @@ def test_growth_rate_vanishes_at_the_borders_and_is_positive_between(f_k, f_j, r
         discriminant = (f_k - f_j) ** 2 - 4 * detuning**2 + real + 1j * (4 * detuning * (f_j - f_k) + imag)
         return (np.sqrt(discriminant).real - f_k - f_j) / 4
 
-    lower, upper = hsu.border_function()(f_k, f_j, real, imag)
+    lower, upper = criterion.border_function()(f_k, f_j, real, imag)
     if np.isnan(lower):
         assert np.isnan(upper)
         assert max(growth(detuning) for detuning in np.linspace(-10, 10, 2001)) < 1e-12
@@ -223,7 +223,7 @@ def test_growth_rate_vanishes_at_the_borders_and_is_positive_between(f_k, f_j, r
 
 def test_border_of_equal_damping_is_the_textbook_one():
     # Mathieu with damping: |Λ| = ½√(P − 4f²); P = (δ amplitude / ω)².
-    lower, upper = hsu.border_function()(0.1, 0.1, 0.25, 0.0)
+    lower, upper = criterion.border_function()(0.1, 0.1, 0.25, 0.0)
     assert upper == pytest.approx(np.sqrt(0.25 - 4 * 0.1**2) / 2, rel=1e-14)
     assert lower == pytest.approx(-upper, rel=1e-14)
 
@@ -261,7 +261,7 @@ def test_steps_name_every_equation_in_order(kind):
 
 def test_derivation_is_done_once():
     assert hsu.derive("sum") is hsu.derive("sum")
-    assert hsu.growth_rate_function("sum") is hsu.growth_rate_function("sum")
+    assert criterion.growth_rate_function("sum") is criterion.growth_rate_function("sum")
 
 
 def test_unknown_kind_is_refused():

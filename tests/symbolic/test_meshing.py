@@ -1,8 +1,6 @@
 """The derivations of chapter 3 against the printed equations, the motion itself, and independent numbers."""
 
 import mpmath
-import numpy as np
-import pytest
 import sympy as sp
 
 from facegear.symbolic import meshing as s
@@ -169,19 +167,6 @@ def test_contact_line_speed_is_the_rate_along_the_line():
     angle = (s.phi_s + s.theta_0s + s.theta_s).subs(POINT)
     speed = s.contact_line_speed().subs({s.alpha: angle, s.gamma: sp.pi - s.gamma_m}).subs(POINT)
     assert abs((rate - speed).evalf(30)) < 1e-25
-
-
-def test_compiled_is_cached_and_refuses_missing_arguments():
-    f = s.compiled(s.equation_of_meshing, s.u_s, s.theta_s, s.phi_s, s.theta_0s, s.r_bs, s.m_2s, s.gamma_m)
-    again = s.compiled(
-        s.equation_of_meshing, s.u_s, s.theta_s, s.phi_s, s.theta_0s, s.r_bs, s.m_2s, s.gamma_m
-    )
-    assert f is again
-    numbers = [float(POINT[k]) for k in (s.u_s, s.theta_s, s.phi_s, s.theta_0s, s.r_bs, s.m_2s, s.gamma_m)]
-    assert f(*numbers) == pytest.approx(float(value(s.equation_of_meshing())), rel=1e-14)
-    assert np.shape(f(np.ones(3), *numbers[1:])) == (3,)
-    with pytest.raises(ValueError, match="must cover every symbol of equation_of_meshing; missing"):
-        s.compiled(s.equation_of_meshing, s.u_s)
 
 
 def test_returned_point_is_the_shaper_s_own_at_the_instant_and_rides_on_the_gear_after():

@@ -15,7 +15,7 @@ from facegear.geometry.kinematics import ContactPath, PairStates, SkewLine
 from facegear.support.labelled import variable
 from facegear.support.parameters import integer_at_least
 from facegear.support.types import FloatArray
-from facegear.symbolic import meshing
+from facegear.symbolic import twins
 
 # The geometry is exact to rounding; what a different machine or library changes stays well below these.
 _length = partial(variable, units="m", atol=1e-11)
@@ -375,16 +375,13 @@ def undercut_condition(drive: Drive, tangents: Sequence[float]) -> xr.Dataset:
     xarray.Dataset
         ``value``, left minus right side of the condition, over ``tangent``; ``roots``, ascending, over ``root``.
     """
-    s = meshing
-    condition = s.compiled(s.undercut_condition, s.t, s.p, s.q, s.theta_star)
     gamma_m = np.pi - drive.shaft_angle
     p, q = drive.speed_ratio * np.sin(gamma_m), 1.0 - drive.speed_ratio * np.cos(gamma_m)
     tangent = np.asarray(tangents, dtype=float)
+    value = twins.undercut_condition(tangent, p, q, drive.shaper_tip_roll)
     return xr.Dataset(
         {
-            "value": _number(
-                "tangent", condition(tangent, p, q, drive.shaper_tip_roll), "Left minus right side"
-            ),
+            "value": _number("tangent", value, "Left minus right side"),
             "roots": _number("root", np.array(drive.undercut_roots), "Real roots"),
         },
         coords={"tangent": tangent},
