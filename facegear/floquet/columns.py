@@ -2,37 +2,32 @@
 
 The transition matrix is an entire function of stiffness and damping, and analytic in mass ≥ 0 and in every other
 parameter a model depends on smoothly. It is therefore computed at Chebyshev points of the parameter only, and its
-entries are interpolated, with more points until the last coefficients vanish. Where modes decay that much faster than
-the others that their multipliers can never be the largest, only the block of the others is interpolated.
+entries are interpolated, with more points until the last coefficients vanish. Some cells between these points are
+computed as well, and tell whether to believe the others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.collocation import FreeMotion, mobilities
+from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.multipliers import Collocation, Method, transition_matrices, with_method
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
-from facegear.floquet.series import ChebyshevSeries, interleaved
+from facegear.floquet.series import ChebyshevSeries
 from facegear.support.parameters import finite_array
-from facegear.support.types import ComplexArray, FloatArray
+from facegear.support.types import FloatArray
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
 # Degree of the first Chebyshev series that is tried.
 _LOWEST_DEGREE = 8
-# Eigenvalues are dropped where all of them are smaller than all that are kept by this factor at least.
-_APART = 0.97
-# Largest part of the eigenvalues that are kept: dropping fewer saves nothing.
-_LARGEST_BLOCK = 0.75
-# A block is followed at no more points than this part of those where it is wanted: eigenvectors cost time too.
-_WORTHWHILE = 0.2
-# Condition number of eigenvectors from which on what they span is not known well enough.
-_DEPENDENT = 1e6
+# Largest difference of an interpolated entry from that of the cell itself, in units of the tolerance of the series.
+_WITNESSED = 10.0
 
 
 def column_spectral_radii(
@@ -70,7 +65,7 @@ def column_spectral_radii(
     def radii(chosen: Method) -> FloatArray:
         evaluate = _load_matrices(system, column, chosen)
         if line is None:
-            return _spectral_radii(evaluate(column))
+            return spectral_radii(evaluate(column))
         return interpolated_spectral_radii(lambda t: evaluate(line.column(t)), line.variable)
 
     return with_method(method, radii)
@@ -190,9 +185,8 @@ def interpolated_spectral_radii(
 ) -> FloatArray:
     """Largest modulus of the eigenvalues of an analytic matrix function of one variable at many points.
 
-    The matrices are evaluated at Chebyshev points of the variable and interpolated. Where some of their eigenvalues
-    are smaller than all others throughout (modes that decay fast), the block of the larger ones is interpolated
-    instead, which has the same largest eigenvalue and fewer others.
+    The matrices are evaluated at Chebyshev points of the variable and interpolated, and at some of the points
+    themselves, far from those, to see whether that is right.
 
     Parameters
     ----------
@@ -205,20 +199,28 @@ def interpolated_spectral_radii(
     Returns
     -------
     array, shape (V,)
-        From matrices evaluated point by point, if interpolation takes as many evaluations.
+        From matrices evaluated point by point, if interpolation takes as many evaluations or is found wrong.
     """
     series = _resolved(evaluate, points, tolerance)
-    if series is None:
-        return _spectral_radii(evaluate(points))
-    block = None
-    # Where the matrix itself bends much, the subspace of its leading eigenvalues bends more than pays.
-    if series.degree == _LOWEST_DEGREE:
-        block = _leading_block(series, tolerance, int(_WORTHWHILE * points.size))
-    return _spectral_radii((series if block is None else block)(points))
+    if series is not None:
+        matrices = series(points)
+        radii = spectral_radii(matrices)
+        chosen = _witnesses(series, points, radii)
+        size = max(float(np.abs(series.values).max()), 1.0)
+        if np.abs(evaluate(points[chosen]) - matrices[chosen]).max() <= _WITNESSED * tolerance * size:
+            return radii
+    return spectral_radii(evaluate(points))
 
 
-def _spectral_radii(matrices: FloatArray) -> FloatArray:
-    return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
+def _witnesses(series: ChebyshevSeries, points: FloatArray, radii: FloatArray) -> NDArray[np.intp]:
+    """Numbers of points that belie a series first: where the radius is largest, and furthest from where it was sampled.
+
+    The latter twice, in the lower and in the upper half of the interval.
+    """
+    nodes = ChebyshevSeries.points_of(series.low, series.high, series.degree)
+    distance = np.abs(points[:, None] - nodes).min(axis=1)
+    lower = points < (series.low + series.high) / 2.0
+    return np.unique([radii.argmax(), *(np.where(half, distance, 0.0).argmax() for half in (lower, ~lower))])
 
 
 def _resolved(
@@ -230,70 +232,3 @@ def _resolved(
         return None
     series = ChebyshevSeries.resolved(evaluate, low, high, _LOWEST_DEGREE, points.size - 2, tolerance)
     return series if series.tail <= tolerance else None
-
-
-def _tail_at(series: ChebyshevSeries, degree: int) -> float:
-    """Tail of a series of higher degree, if coefficients go on to fall as they do in the upper half of this one."""
-    sizes = np.abs(series.coefficients).max(axis=(1, 2))
-    middle = series.degree // 2
-    fall = float(sizes[-2:].max() / sizes[middle - 1 : middle + 1].max())
-    exponent: float = (degree - series.degree) / (series.degree - middle)
-    return float(series.tail * fall**exponent)
-
-
-def _leading_block(series: ChebyshevSeries, tolerance: float, most: int) -> ChebyshevSeries | None:
-    """Blocks with the eigenvalues of largest modulus, r of them, as a series of (r, r) matrices.
-
-    In fixed coordinates (y, z) the invariant subspace of the r largest eigenvalues is z = X y, and the matrix acts on
-    it as Φ_yy + Φ_yz X, which is smooth along the parameter while these eigenvalues stay apart from the others. None
-    if they do not, are nearly all, or would take a degree above `most` to follow.
-    """
-    moduli, vectors = _ordered_eigenvectors(series.values)
-    while True:
-        count = _count_apart(moduli)
-        blocks = None if count is None else _blocks(series.values, vectors[:, :, :count])
-        if blocks is None:
-            return None
-        block = replace(series, values=blocks)
-        if block.tail <= tolerance:
-            return block
-        if 2 * block.degree > most or _tail_at(block, most) > tolerance:
-            return None
-        between = series(series.between)
-        more_moduli, more_vectors = _ordered_eigenvectors(between)
-        moduli = interleaved(moduli, more_moduli)
-        vectors = interleaved(vectors.view(float), more_vectors.view(float)).view(complex)
-        series = replace(series, values=interleaved(series.values, between))
-
-
-def _ordered_eigenvectors(matrices: FloatArray) -> tuple[FloatArray, ComplexArray]:
-    """Moduli of eigenvalues, (K, d), descending, and their vectors, (K, d, d)."""
-    eigenvalues, vectors = np.linalg.eig(matrices)
-    order = np.argsort(-np.abs(eigenvalues), axis=-1, kind="stable")
-    moduli = np.take_along_axis(np.abs(eigenvalues), order, axis=-1)
-    return moduli, np.take_along_axis(vectors, order[:, None, :], axis=-1).astype(complex)
-
-
-def _count_apart(moduli: FloatArray) -> int | None:
-    """How many eigenvalues are larger than the others by the largest factor, from moduli (K, d), descending."""
-    counts = np.arange(1, int(_LARGEST_BLOCK * moduli.shape[1]) + 1)
-    if counts.size == 0:
-        return None
-    larger, smaller = moduli[:, counts - 1], moduli[:, counts]
-    ratios = np.divide(smaller, larger, out=np.ones_like(smaller), where=larger > 0.0).max(axis=0)
-    return int(counts[ratios.argmin()]) if ratios.min() <= _APART else None
-
-
-def _blocks(matrices: FloatArray, vectors: ComplexArray) -> FloatArray | None:
-    """Blocks of matrices (K, d, d) on the spans of their vectors (K, d, r), or None if these are close to dependent."""
-    count = vectors.shape[-1]
-    # Orthonormal coordinates, the first r of which span the subspace of the middle matrix: vectors of a conjugate
-    # pair span the same as their real and imaginary parts.
-    middle = vectors[matrices.shape[0] // 2]
-    basis = np.linalg.svd(np.concatenate([middle.real, middle.imag], axis=1))[0]
-    turned = basis.T @ vectors
-    if np.linalg.cond(turned[:, :count]).max() > _DEPENDENT:
-        return None
-    graph = (turned[:, count:] @ np.linalg.inv(turned[:, :count])).real
-    first = basis[:, :count].T @ matrices
-    return np.asarray(first @ (basis[:, :count] + basis[:, count:] @ graph), dtype=float)

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import (
     Method,
@@ -251,8 +252,7 @@ class MultiplierCurve:
         """max|λ| at speeds (m,)."""
         speeds = np.atleast_1d(speeds)
         parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
-        eigenvalues = [np.linalg.eigvals(self.transition_matrices(part)) for part in parts]
-        return np.asarray(np.abs(np.concatenate(eigenvalues)).max(axis=-1), dtype=float)
+        return np.concatenate([spectral_radii(self.transition_matrices(part)) for part in parts])
 
     @property
     def batch(self) -> int:
