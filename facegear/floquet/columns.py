@@ -19,8 +19,12 @@ from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.multipliers import Collocation, Method, transition_matrices, with_method
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries
+from facegear.floquet.stepping import Family
 from facegear.support.parameters import finite_array
 from facegear.support.types import FloatArray
+
+#: Matrices (K, d, d) at values (K,) of a variable.
+Evaluate = Callable[[FloatArray], FloatArray]
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
@@ -59,34 +63,16 @@ def column_spectral_radii(
     TypeError, ValueError
         Naming the parameter, if shapes do not match or values are negative or not finite.
     """
-    column = _load_column(len(system.loads), masses, dampings, stiffnesses)
-    line = _StraightLine.through(column, float(mobilities([system]).max(initial=0.0)))
-
-    def radii(chosen: Method) -> FloatArray:
-        evaluate = _load_matrices(system, column, chosen)
-        if line is None:
-            return spectral_radii(evaluate(column))
-        return interpolated_spectral_radii(lambda t: evaluate(line.column(t)), line.variable)
-
-    return with_method(method, radii)
+    swept = LoadSweep.of(system, _load_column(len(system.loads), masses, dampings, stiffnesses))
+    scale = Family([system]).scale
+    return with_method(
+        method, lambda chosen: column_of(swept.matrices(system, chosen, scale), swept.variable, swept.smooth)
+    )
 
 
-def _load_matrices(
-    system: PeriodicSystem, column: LoadColumn, method: Method
-) -> Callable[[LoadColumn], FloatArray]:
-    """Transition matrices of a system for any part of a column, in one set of coordinates."""
-    if isinstance(method, Collocation):
-        # What does not depend on the loads is prepared once.
-        return FreeMotion([system], column, method.nodes, method.panel_angle).transition_matrices
-
-    def matrices(part: LoadColumn) -> FloatArray:
-        systems = [
-            system.replace_loads(mass=m, damping=c, stiffness=k)
-            for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
-        ]
-        return transition_matrices(systems, method)
-
-    return matrices
+def column_of(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArray:
+    """Spectral radii at values of the variable, shape (V,), interpolated if matrices are smooth in it."""
+    return interpolated_spectral_radii(evaluate, variable) if smooth else spectral_radii(evaluate(variable))
 
 
 def family_spectral_radii(
@@ -112,11 +98,23 @@ def family_spectral_radii(
         raise ValueError(f"values must have shape (V,), V >= 1; got shape {points.shape}")
 
     def radii(chosen: Method) -> FloatArray:
-        return interpolated_spectral_radii(
-            lambda part: transition_matrices([system_at(value) for value in part.tolist()], chosen), points
-        )
+        return interpolated_spectral_radii(family_matrices(system_at, chosen, scale), points)
 
+    scale = Family([system_at(float(points[points.size // 2]))]).scale
     return with_method(method, radii)
+
+
+def family_matrices(
+    system_at: Callable[[float], PeriodicSystem], method: Method, scale: FloatArray
+) -> Evaluate:
+    """Transition matrices of the system at each value of a parameter, S Φ S⁻¹ with the given S."""
+    inverse = np.linalg.inv(scale)
+
+    def matrices(values: FloatArray) -> FloatArray:
+        found = transition_matrices([system_at(value) for value in values.tolist()], method)
+        return np.asarray(scale @ found @ inverse, dtype=float)
+
+    return matrices
 
 
 def _load_column(loads: int, masses: ArrayLike, dampings: ArrayLike, stiffnesses: ArrayLike) -> LoadColumn:
@@ -133,6 +131,59 @@ def _load_column(loads: int, masses: ArrayLike, dampings: ArrayLike, stiffnesses
         column = array[:, None] if array.ndim == 1 else array
         arrays[name] = np.broadcast_to(column, (length, loads))
     return LoadColumn(arrays["masses"], arrays["dampings"], arrays["stiffnesses"])
+
+
+@dataclass(frozen=True, eq=False)
+class LoadSweep:
+    """Load parameters along a column, the same at all speeds, and the variable in which matrices are interpolated.
+
+    Attributes
+    ----------
+    column : LoadColumn
+    variable : array, shape (V,)
+        See :class:`_StraightLine`; the number of the value where values do not lie on a line.
+    line : _StraightLine, optional
+    """
+
+    column: LoadColumn
+    variable: FloatArray
+    line: _StraightLine | None
+
+    @classmethod
+    def of(cls, system: PeriodicSystem, column: LoadColumn) -> LoadSweep:
+        """Find the variable for a system, whose own load parameters do not matter."""
+        line = _StraightLine.through(column, float(mobilities([system]).max(initial=0.0)))
+        return cls(column, np.arange(float(len(column))) if line is None else line.variable, line)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether matrices are smooth functions of the variable."""
+        return self.line is not None
+
+    def at(self, variable: FloatArray) -> LoadColumn:
+        """Load parameters at values of the variable."""
+        if self.line is not None:
+            return self.line.column(variable)
+        return LoadColumn.from_stacked(self.column.stacked()[variable.astype(int)])
+
+    def matrices(self, system: PeriodicSystem, method: Method, scale: FloatArray) -> Evaluate:
+        """Transition matrices of a system at values of the variable, S Φ S⁻¹ with the given S."""
+        inverse = np.linalg.inv(scale)
+        if isinstance(method, Collocation):
+            # What does not depend on the loads is prepared once.
+            motion = FreeMotion([system], self.column, method.nodes, method.panel_angle)
+            to, back = scale @ motion.modes.state_from_real()[0], motion.modes.real_from_state()[0] @ inverse
+            return lambda t: to @ motion.transition_matrices(self.at(t)) @ back
+
+        def matrices(t: FloatArray) -> FloatArray:
+            part = self.at(t)
+            systems = [
+                system.replace_loads(mass=m, damping=c, stiffness=k)
+                for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
+            ]
+            return np.asarray(scale @ transition_matrices(systems, method) @ inverse, dtype=float)
+
+        return matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +232,7 @@ class _StraightLine:
 
 
 def interpolated_spectral_radii(
-    evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float = TOLERANCE
+    evaluate: Evaluate, points: FloatArray, tolerance: float = TOLERANCE
 ) -> FloatArray:
     """Largest modulus of the eigenvalues of an analytic matrix function of one variable at many points.
 
@@ -201,15 +252,20 @@ def interpolated_spectral_radii(
     array, shape (V,)
         From matrices evaluated point by point, if interpolation takes as many evaluations or is found wrong.
     """
-    series = _resolved(evaluate, points, tolerance)
+    series = resolved(evaluate, points, tolerance)
     if series is not None:
         matrices = series(points)
         radii = spectral_radii(matrices)
         chosen = _witnesses(series, points, radii)
-        size = max(float(np.abs(series.values).max()), 1.0)
-        if np.abs(evaluate(points[chosen]) - matrices[chosen]).max() <= _WITNESSED * tolerance * size:
+        if agree(matrices[chosen], evaluate(points[chosen]), tolerance):
             return radii
     return spectral_radii(evaluate(points))
+
+
+def agree(interpolated: FloatArray, own: FloatArray, tolerance: float = TOLERANCE) -> bool:
+    """Whether interpolated matrices are those of the cells themselves, to an error that the tolerance allows."""
+    size = max(float(np.abs(own).max()), 1.0)
+    return bool(np.abs(interpolated - own).max() <= _WITNESSED * tolerance * size)
 
 
 def _witnesses(series: ChebyshevSeries, points: FloatArray, radii: FloatArray) -> NDArray[np.intp]:
@@ -223,12 +279,15 @@ def _witnesses(series: ChebyshevSeries, points: FloatArray, radii: FloatArray) -
     return np.unique([radii.argmax(), *(np.where(half, distance, 0.0).argmax() for half in (lower, ~lower))])
 
 
-def _resolved(
-    evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float
-) -> ChebyshevSeries | None:
+def resolved(evaluate: Evaluate, points: FloatArray, tolerance: float) -> ChebyshevSeries | None:
     """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
-    low, high = float(points.min()), float(points.max())
-    if points.size <= _LOWEST_DEGREE + 1 or low == high:
+    if not resolvable(points):
         return None
+    low, high = float(points.min()), float(points.max())
     series = ChebyshevSeries.resolved(evaluate, low, high, _LOWEST_DEGREE, points.size - 2, tolerance)
     return series if series.tail <= tolerance else None
+
+
+def resolvable(points: FloatArray) -> bool:
+    """Whether a series is tried at all: there are more points than the shortest has."""
+    return points.size > _LOWEST_DEGREE + 1 and float(np.ptp(points)) > 0.0

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from facegear.support.types import ComplexArray, FloatArray
 
 # Fewer matrices than this are not worth another library.
-_FEWEST = 64
+_FEWEST = 32
 # Largest difference of the sum of all eigenvalues, or of their squares, from the trace, relative to the norm.
 _TRACE_CHECK = 1e-12
 # Squares of entries beyond these bounds leave the range of numbers.
