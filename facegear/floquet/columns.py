@@ -2,37 +2,36 @@
 
 The transition matrix is an entire function of stiffness and damping, and analytic in mass ≥ 0 and in every other
 parameter a model depends on smoothly. It is therefore computed at Chebyshev points of the parameter only, and its
-entries are interpolated, with more points until the last coefficients vanish. Where modes decay that much faster than
-the others that their multipliers can never be the largest, only the block of the others is interpolated.
+entries are interpolated, with more points until the last coefficients vanish. Some cells between these points are
+computed as well, and tell whether to believe the others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.collocation import FreeMotion, mobilities
+from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.multipliers import Collocation, Method, transition_matrices, with_method
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
-from facegear.floquet.series import ChebyshevSeries, interleaved
+from facegear.floquet.series import ChebyshevSeries
+from facegear.floquet.stepping import Family
 from facegear.support.parameters import finite_array
-from facegear.support.types import ComplexArray, FloatArray
+from facegear.support.types import FloatArray
+
+#: Matrices (K, d, d) at values (K,) of a variable.
+Evaluate = Callable[[FloatArray], FloatArray]
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
 # Degree of the first Chebyshev series that is tried.
 _LOWEST_DEGREE = 8
-# Eigenvalues are dropped where all of them are smaller than all that are kept by this factor at least.
-_APART = 0.97
-# Largest part of the eigenvalues that are kept: dropping fewer saves nothing.
-_LARGEST_BLOCK = 0.75
-# A block is followed at no more points than this part of those where it is wanted: eigenvectors cost time too.
-_WORTHWHILE = 0.2
-# Condition number of eigenvectors from which on what they span is not known well enough.
-_DEPENDENT = 1e6
+# Largest difference of an interpolated entry from that of the cell itself, in units of the tolerance of the series.
+_WITNESSED = 10.0
 
 
 def column_spectral_radii(
@@ -64,37 +63,16 @@ def column_spectral_radii(
     TypeError, ValueError
         Naming the parameter, if shapes do not match or values are negative or not finite.
     """
-    column = _load_column(len(system.loads), masses, dampings, stiffnesses)
-    line = _StraightLine.through(column, float(mobilities([system]).max(initial=0.0)))
-
-    def radii(chosen: Method) -> FloatArray:
-        evaluate = _load_matrices(system, column, chosen)
-        if line is None:
-            return _spectral_radii(evaluate(column))
-        return interpolated_spectral_radii(lambda t: evaluate(line.column(t)), line.variable)
-
-    return with_method(method, radii)
+    swept = LoadSweep.of(system, _load_column(len(system.loads), masses, dampings, stiffnesses))
+    scale = Family([system]).scale
+    return with_method(
+        method, lambda chosen: column_of(swept.matrices(system, chosen, scale), swept.variable, swept.smooth)
+    )
 
 
-def _load_matrices(
-    system: PeriodicSystem, column: LoadColumn, method: Method
-) -> Callable[[LoadColumn], FloatArray]:
-    """Transition matrices of a system for any part of a column, in one set of coordinates."""
-    if isinstance(method, Collocation):
-        # What does not depend on the loads is prepared once.
-        motion = FreeMotion(
-            [system], column, method.nodes, method.panel_angle, fewest_held=method.fewest_held
-        )
-        return motion.transition_matrices
-
-    def matrices(part: LoadColumn) -> FloatArray:
-        systems = [
-            system.replace_loads(mass=m, damping=c, stiffness=k)
-            for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
-        ]
-        return transition_matrices(systems, method)
-
-    return matrices
+def column_of(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArray:
+    """Spectral radii at values of the variable, shape (V,), interpolated if matrices are smooth in it."""
+    return interpolated_spectral_radii(evaluate, variable) if smooth else spectral_radii(evaluate(variable))
 
 
 def family_spectral_radii(
@@ -120,11 +98,23 @@ def family_spectral_radii(
         raise ValueError(f"values must have shape (V,), V >= 1; got shape {points.shape}")
 
     def radii(chosen: Method) -> FloatArray:
-        return interpolated_spectral_radii(
-            lambda part: transition_matrices([system_at(value) for value in part.tolist()], chosen), points
-        )
+        return interpolated_spectral_radii(family_matrices(system_at, chosen, scale), points)
 
+    scale = Family([system_at(float(points[points.size // 2]))]).scale
     return with_method(method, radii)
+
+
+def family_matrices(
+    system_at: Callable[[float], PeriodicSystem], method: Method, scale: FloatArray
+) -> Evaluate:
+    """Transition matrices of the system at each value of a parameter, S Φ S⁻¹ with the given S."""
+    inverse = np.linalg.inv(scale)
+
+    def matrices(values: FloatArray) -> FloatArray:
+        found = transition_matrices([system_at(value) for value in values.tolist()], method)
+        return np.asarray(scale @ found @ inverse, dtype=float)
+
+    return matrices
 
 
 def _load_column(loads: int, masses: ArrayLike, dampings: ArrayLike, stiffnesses: ArrayLike) -> LoadColumn:
@@ -141,6 +131,61 @@ def _load_column(loads: int, masses: ArrayLike, dampings: ArrayLike, stiffnesses
         column = array[:, None] if array.ndim == 1 else array
         arrays[name] = np.broadcast_to(column, (length, loads))
     return LoadColumn(arrays["masses"], arrays["dampings"], arrays["stiffnesses"])
+
+
+@dataclass(frozen=True, eq=False)
+class LoadSweep:
+    """Load parameters along a column, the same at all speeds, and the variable in which matrices are interpolated.
+
+    Attributes
+    ----------
+    column : LoadColumn
+    variable : array, shape (V,)
+        See :class:`_StraightLine`; the number of the value where values do not lie on a line.
+    line : _StraightLine, optional
+    """
+
+    column: LoadColumn
+    variable: FloatArray
+    line: _StraightLine | None
+
+    @classmethod
+    def of(cls, system: PeriodicSystem, column: LoadColumn) -> LoadSweep:
+        """Find the variable for a system, whose own load parameters do not matter."""
+        line = _StraightLine.through(column, float(mobilities([system]).max(initial=0.0)))
+        return cls(column, np.arange(float(len(column))) if line is None else line.variable, line)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether matrices are smooth functions of the variable."""
+        return self.line is not None
+
+    def at(self, variable: FloatArray) -> LoadColumn:
+        """Load parameters at values of the variable."""
+        if self.line is not None:
+            return self.line.column(variable)
+        return LoadColumn.from_stacked(self.column.stacked()[variable.astype(int)])
+
+    def matrices(self, system: PeriodicSystem, method: Method, scale: FloatArray) -> Evaluate:
+        """Transition matrices of a system at values of the variable, S Φ S⁻¹ with the given S."""
+        inverse = np.linalg.inv(scale)
+        if isinstance(method, Collocation):
+            # What does not depend on the loads is prepared once.
+            motion = FreeMotion(
+                [system], self.column, method.nodes, method.panel_angle, fewest_held=method.fewest_held
+            )
+            to, back = scale @ motion.modes.state_from_real()[0], motion.modes.real_from_state()[0] @ inverse
+            return lambda t: to @ motion.transition_matrices(self.at(t)) @ back
+
+        def matrices(t: FloatArray) -> FloatArray:
+            part = self.at(t)
+            systems = [
+                system.replace_loads(mass=m, damping=c, stiffness=k)
+                for m, c, k in zip(part.mass, part.damping, part.stiffness, strict=True)
+            ]
+            return np.asarray(scale @ transition_matrices(systems, method) @ inverse, dtype=float)
+
+        return matrices
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,13 +234,12 @@ class _StraightLine:
 
 
 def interpolated_spectral_radii(
-    evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float = TOLERANCE
+    evaluate: Evaluate, points: FloatArray, tolerance: float = TOLERANCE
 ) -> FloatArray:
     """Largest modulus of the eigenvalues of an analytic matrix function of one variable at many points.
 
-    The matrices are evaluated at Chebyshev points of the variable and interpolated. Where some of their eigenvalues
-    are smaller than all others throughout (modes that decay fast), the block of the larger ones is interpolated
-    instead, which has the same largest eigenvalue and fewer others.
+    The matrices are evaluated at Chebyshev points of the variable and interpolated, and at some of the points
+    themselves, far from those, to see whether that is right.
 
     Parameters
     ----------
@@ -208,95 +252,44 @@ def interpolated_spectral_radii(
     Returns
     -------
     array, shape (V,)
-        From matrices evaluated point by point, if interpolation takes as many evaluations.
+        From matrices evaluated point by point, if interpolation takes as many evaluations or is found wrong.
     """
-    series = _resolved(evaluate, points, tolerance)
-    if series is None:
-        return _spectral_radii(evaluate(points))
-    block = None
-    # Where the matrix itself bends much, the subspace of its leading eigenvalues bends more than pays.
-    if series.degree == _LOWEST_DEGREE:
-        block = _leading_block(series, tolerance, int(_WORTHWHILE * points.size))
-    return _spectral_radii((series if block is None else block)(points))
+    series = resolved(evaluate, points, tolerance)
+    if series is not None:
+        matrices = series(points)
+        radii = spectral_radii(matrices)
+        chosen = _witnesses(series, points, radii)
+        if agree(matrices[chosen], evaluate(points[chosen]), tolerance):
+            return radii
+    return spectral_radii(evaluate(points))
 
 
-def _spectral_radii(matrices: FloatArray) -> FloatArray:
-    return np.asarray(np.abs(np.linalg.eigvals(matrices)).max(axis=-1), dtype=float)
+def agree(interpolated: FloatArray, own: FloatArray, tolerance: float = TOLERANCE) -> bool:
+    """Whether interpolated matrices are those of the cells themselves, to an error that the tolerance allows."""
+    size = max(float(np.abs(own).max()), 1.0)
+    return bool(np.abs(interpolated - own).max() <= _WITNESSED * tolerance * size)
 
 
-def _resolved(
-    evaluate: Callable[[FloatArray], FloatArray], points: FloatArray, tolerance: float
-) -> ChebyshevSeries | None:
+def _witnesses(series: ChebyshevSeries, points: FloatArray, radii: FloatArray) -> NDArray[np.intp]:
+    """Numbers of points that belie a series first: where the radius is largest, and furthest from where it was sampled.
+
+    The latter twice, in the lower and in the upper half of the interval.
+    """
+    nodes = ChebyshevSeries.points_of(series.low, series.high, series.degree)
+    distance = np.abs(points[:, None] - nodes).min(axis=1)
+    lower = points < (series.low + series.high) / 2.0
+    return np.unique([radii.argmax(), *(np.where(half, distance, 0.0).argmax() for half in (lower, ~lower))])
+
+
+def resolved(evaluate: Evaluate, points: FloatArray, tolerance: float) -> ChebyshevSeries | None:
     """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
-    low, high = float(points.min()), float(points.max())
-    if points.size <= _LOWEST_DEGREE + 1 or low == high:
+    if not resolvable(points):
         return None
+    low, high = float(points.min()), float(points.max())
     series = ChebyshevSeries.resolved(evaluate, low, high, _LOWEST_DEGREE, points.size - 2, tolerance)
     return series if series.tail <= tolerance else None
 
 
-def _tail_at(series: ChebyshevSeries, degree: int) -> float:
-    """Tail of a series of higher degree, if coefficients go on to fall as they do in the upper half of this one."""
-    sizes = np.abs(series.coefficients).max(axis=(1, 2))
-    middle = series.degree // 2
-    fall = float(sizes[-2:].max() / sizes[middle - 1 : middle + 1].max())
-    exponent: float = (degree - series.degree) / (series.degree - middle)
-    return float(series.tail * fall**exponent)
-
-
-def _leading_block(series: ChebyshevSeries, tolerance: float, most: int) -> ChebyshevSeries | None:
-    """Blocks with the eigenvalues of largest modulus, r of them, as a series of (r, r) matrices.
-
-    In fixed coordinates (y, z) the invariant subspace of the r largest eigenvalues is z = X y, and the matrix acts on
-    it as Φ_yy + Φ_yz X, which is smooth along the parameter while these eigenvalues stay apart from the others. None
-    if they do not, are nearly all, or would take a degree above `most` to follow.
-    """
-    moduli, vectors = _ordered_eigenvectors(series.values)
-    while True:
-        count = _count_apart(moduli)
-        blocks = None if count is None else _blocks(series.values, vectors[:, :, :count])
-        if blocks is None:
-            return None
-        block = replace(series, values=blocks)
-        if block.tail <= tolerance:
-            return block
-        if 2 * block.degree > most or _tail_at(block, most) > tolerance:
-            return None
-        between = series(series.between)
-        more_moduli, more_vectors = _ordered_eigenvectors(between)
-        moduli = interleaved(moduli, more_moduli)
-        vectors = interleaved(vectors.view(float), more_vectors.view(float)).view(complex)
-        series = replace(series, values=interleaved(series.values, between))
-
-
-def _ordered_eigenvectors(matrices: FloatArray) -> tuple[FloatArray, ComplexArray]:
-    """Moduli of eigenvalues, (K, d), descending, and their vectors, (K, d, d)."""
-    eigenvalues, vectors = np.linalg.eig(matrices)
-    order = np.argsort(-np.abs(eigenvalues), axis=-1, kind="stable")
-    moduli = np.take_along_axis(np.abs(eigenvalues), order, axis=-1)
-    return moduli, np.take_along_axis(vectors, order[:, None, :], axis=-1).astype(complex)
-
-
-def _count_apart(moduli: FloatArray) -> int | None:
-    """How many eigenvalues are larger than the others by the largest factor, from moduli (K, d), descending."""
-    counts = np.arange(1, int(_LARGEST_BLOCK * moduli.shape[1]) + 1)
-    if counts.size == 0:
-        return None
-    larger, smaller = moduli[:, counts - 1], moduli[:, counts]
-    ratios = np.divide(smaller, larger, out=np.ones_like(smaller), where=larger > 0.0).max(axis=0)
-    return int(counts[ratios.argmin()]) if ratios.min() <= _APART else None
-
-
-def _blocks(matrices: FloatArray, vectors: ComplexArray) -> FloatArray | None:
-    """Blocks of matrices (K, d, d) on the spans of their vectors (K, d, r), or None if these are close to dependent."""
-    count = vectors.shape[-1]
-    # Orthonormal coordinates, the first r of which span the subspace of the middle matrix: vectors of a conjugate
-    # pair span the same as their real and imaginary parts.
-    middle = vectors[matrices.shape[0] // 2]
-    basis = np.linalg.svd(np.concatenate([middle.real, middle.imag], axis=1))[0]
-    turned = basis.T @ vectors
-    if np.linalg.cond(turned[:, :count]).max() > _DEPENDENT:
-        return None
-    graph = (turned[:, count:] @ np.linalg.inv(turned[:, :count])).real
-    first = basis[:, :count].T @ matrices
-    return np.asarray(first @ (basis[:, :count] + basis[:, count:] @ graph), dtype=float)
+def resolvable(points: FloatArray) -> bool:
+    """Whether a series is tried at all: there are more points than the shortest has."""
+    return points.size > _LOWEST_DEGREE + 1 and float(np.ptp(points)) > 0.0

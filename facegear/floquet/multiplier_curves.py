@@ -15,6 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import (
     Method,
@@ -67,6 +68,13 @@ class FrozenMotions:
         return cls(low, high, np.concatenate(found))
 
     @cached_property
+    def leading(self) -> ComplexArray:
+        """Exponents of the motions of which none is both faster and less damped: all others are resolved with them."""
+        order = np.argsort(-np.abs(self.exponents.imag), kind="stable")
+        growth = self.exponents.real[order]
+        return self.exponents[order][growth > np.append(-np.inf, np.maximum.accumulate(growth)[:-1])]
+
+    @cached_property
     def live_angle(self) -> tuple[FloatArray, FloatArray]:
         """Slowness, ascending, and angle [rad] by which the fastest motion turns that has not died within a period.
 
@@ -103,9 +111,9 @@ class FrozenMotions:
         """Even degree at which the Chebyshev series of all motions between two values of slowness have ended."""
         half = (high - low) / 2.0
         # Twice the largest angle is far beyond the last Bessel function that counts.
-        turn = float(np.abs(self.exponents.imag).max()) * half
+        turn = float(np.abs(self.leading.imag).max()) * half
         nodes = low + half * (1.0 + chebyshev.chebpts2(min(_LONGEST, 2 * int(turn) + 64) + 1))
-        decaying = np.minimum(self.exponents.real, 0.0) + 1j * self.exponents.imag
+        decaying = np.minimum(self.leading.real, 0.0) + 1j * self.leading.imag
         motions = np.exp(decaying * nodes[:, None])
         sizes = np.abs(lobatto_coefficients(motions)).max(axis=1)
         last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
@@ -251,8 +259,7 @@ class MultiplierCurve:
         """max|λ| at speeds (m,)."""
         speeds = np.atleast_1d(speeds)
         parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
-        eigenvalues = [np.linalg.eigvals(self.transition_matrices(part)) for part in parts]
-        return np.asarray(np.abs(np.concatenate(eigenvalues)).max(axis=-1), dtype=float)
+        return np.concatenate([spectral_radii(self.transition_matrices(part)) for part in parts])
 
     @property
     def batch(self) -> int:

@@ -1,10 +1,11 @@
 """Two-parameter stability maps: growth rates over speed and one swept parameter.
 
-A map is made of columns, one a speed, or of rows, one a value of the parameter. Where only the mass, damping or
-stiffness of the contacts changes along a column, its transition matrices share nearly all their work
-(:func:`facegear.floquet.columns.column_spectral_radii`). Where other matrices change, they are interpolated along the
-parameter, or along speed where that takes fewer of them, as far as they are smooth, and computed cell by cell where
-they are not. Columns and rows are shared out over processes by joblib.
+A map is made of columns, one a speed. Where only the mass, damping or stiffness of the contacts changes along a column,
+its transition matrices share nearly all their work (:class:`facegear.floquet.columns.LoadSweep`). They are interpolated
+along the parameter as far as they are smooth, and computed cell by cell where they are not. Where many columns lie
+close together they are interpolated along speed as well, on a sheet (:mod:`facegear.floquet.sheets`): columns are then
+computed at few speeds, and in each group of columns one is computed all the same, to see whether the sheet is right.
+What is left are eigenvalues. Columns are shared out over processes or threads by joblib.
 
 What falls between the columns of a map, tongues narrower than their distance, is found by
 :func:`facegear.maps.tracing.tongues`.
@@ -15,7 +16,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from importlib.metadata import version
 from typing import Any
 
@@ -23,18 +24,22 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from facegear.floquet.columns import column_spectral_radii, interpolated_spectral_radii
+from facegear.floquet.collocation import UnsuitableSystemError
+from facegear.floquet.columns import Evaluate, LoadSweep, agree, column_of, family_matrices
+from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at, require_model
-from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
+from facegear.floquet.multiplier_curves import FrozenMotions
 from facegear.floquet.multipliers import (
     Method,
     multipliers,
+    rounding_error,
     rounding_shift,
-    transition_matrices,
     with_method,
 )
-from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.periodic import LoadColumn, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.series import ChebyshevSeries
+from facegear.floquet.sheets import SHEET_TOLERANCE, Sheet, is_interpolated, samples, windows
 from facegear.floquet.stepping import Family
 from facegear.maps.parallel import Workers, computed, parts_of
 from facegear.support.parameters import finite_array, number_of_workers, rpm
@@ -42,12 +47,8 @@ from facegear.support.types import FloatArray
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8
-# Matrices that a column takes at least, interpolated along the parameter.
-_COLUMN_MATRICES = 9
-# A row is interpolated a little further than its speeds.
-_BEYOND = 1e-3
-# Largest difference of spectral radii between interpolated matrices and a cell computed alone.
-_INTERPOLATION_CHECK = 1e-8
+# The same on a sheet: each group has a column that is computed to check the others.
+_SHEET_CHUNK = 16
 
 
 def stability_map(
@@ -119,16 +120,24 @@ def stability_map(
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
     first = [model.system(float(speeds[0])) for model in sweep.models]
     loads = sweep.load_parameters(first)
-    tasks = (
-        _rows(sweep, speeds)
-        if _goes_along_speed(sweep, speeds, loads, first)
-        else _chunks(sweep, speeds, loads, first)
-    )
     radii = np.empty((values.size, speeds.size))
     # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
-    prefer: Workers = "threads" if all(isinstance(task, _LoadChunk) for task in tasks) else "processes"
-    for number, result in computed(tasks, "stability map", jobs, progress, cache_directory, prefer):
-        radii[tasks[number].place] = result
+    prefer: Workers = "processes" if loads is None else "threads"
+    chunks, sheets = _layout(sweep, speeds, loads, first)
+    samples_of = [sample for sheet in sheets for sample in sheet.samples]
+    found: dict[int, FloatArray] = {}
+    for number, result in computed(
+        [*chunks, *samples_of], "stability map", jobs, progress, cache_directory, prefer
+    ):
+        if number < len(chunks):
+            radii[chunks[number].place] = result
+        else:
+            found[number - len(chunks)] = result
+    results = iter([found[number] for number in range(len(samples_of))])
+    cells = [chunk for sheet in sheets for chunk in sheet.chunks([next(results) for _ in sheet.samples])]
+    # On sheets all is linear algebra, of whatever models.
+    for number, result in computed(cells, "cells on sheets", jobs, progress, cache_directory, "threads"):
+        radii[cells[number].place] = result
     error = _error_estimate(sweep, speeds, radii)
 
     return xarray.DataArray(
@@ -220,10 +229,15 @@ class _Sweep:
         return np.array([_load_parameters(system) for system in systems])
 
     @property
+    def probed(self) -> tuple[Model, ...]:
+        """Models of these values."""
+        return tuple(self.model_at(self.values[probe]) for probe in self.probes)
+
+    @property
     def description(self) -> str:
         """Method in words."""
         chosen = "default method" if self.method is None else repr(self.method)
-        return f"{chosen}, transition matrices interpolated along {self.parameter} or speed where they are smooth"
+        return f"{chosen}, transition matrices interpolated along {self.parameter} and speed where they are smooth"
 
 
 def _load_parameters(system: PeriodicSystem) -> list[list[float]]:
@@ -243,7 +257,12 @@ def _same_but_load_parameters(one: PeriodicSystem, other: PeriodicSystem) -> boo
     return (
         one.period == other.period
         and len(one.loads) == len(other.loads)
+        and len(one.jumps) == len(other.jumps)
         and all(np.array_equal(getattr(one, m), getattr(other, m)) for m in ("mass", "damping", "stiffness"))
+        and all(
+            a.fraction == b.fraction and np.array_equal(a.matrix, b.matrix)
+            for a, b in zip(one.jumps, other.jumps, strict=True)
+        )
         and all(
             a.rate == b.rate and _same_function(a.weight, b.weight) and _same_function(a.shape, b.shape)
             for a, b in zip(one.loads, other.loads, strict=True)
@@ -251,127 +270,336 @@ def _same_but_load_parameters(one: PeriodicSystem, other: PeriodicSystem) -> boo
     )
 
 
-Place = tuple[slice, slice]
-
-
 @dataclass(frozen=True, eq=False)
-class _LoadChunk:
-    """Columns along which only load parameters change: systems of each speed, parameters (V, 3, loads)."""
+class _LoadColumn:
+    """A column along which only load parameters change."""
 
-    place: Place
-    systems: tuple[PeriodicSystem, ...]
-    loads: FloatArray
-    method: Method | None
+    system: PeriodicSystem
+    loads: LoadSweep
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
-        yield from (repr(self.method), self.loads)
-        for system in self.systems:
-            yield from parts_of(system)
+        yield self.loads.column.stacked()
+        yield from parts_of(self.system)
 
-    def compute(self) -> FloatArray:
-        """Spectral radii, shape (V, speeds)."""
-        masses, dampings, stiffnesses = self.loads.transpose(1, 0, 2)
-        columns = [
-            column_spectral_radii(system, masses, dampings, stiffnesses, self.method)
-            for system in self.systems
-        ]
-        return np.stack(columns, axis=1)
+    @property
+    def variable(self) -> FloatArray:
+        """Variable in which matrices are interpolated, (V,)."""
+        return self.loads.variable
+
+    @property
+    def smooth(self) -> bool:
+        """Whether they are smooth in it."""
+        return self.loads.smooth
+
+    @property
+    def scale(self) -> FloatArray:
+        """Coordinates in which entries are of comparable size."""
+        return Family([self.system]).scale
+
+    def matrices(self, method: Method, scale: FloatArray) -> Evaluate:
+        """Transition matrices at values of the variable."""
+        return self.loads.matrices(self.system, method, scale)
+
+    def radii(self, method: Method | None) -> FloatArray:
+        """Spectral radii, (V,)."""
+        return _column_radii(self, method)
 
 
 @dataclass(frozen=True, eq=False)
-class _ModelChunk:
-    """Columns along which anything may change, or one row, of a single value."""
+class _ModelColumn:
+    """A column along which anything may change; `alone` if values share no breakpoints or count something."""
 
-    place: Place
     sweep: _Sweep
-    speeds: FloatArray
-    alone: bool = False
+    speed: float
+    alone: bool
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on: of the model's code, what it makes of the first, middle and last value."""
         sweep = self.sweep
-        yield from (
-            repr(sweep.method),
-            repr(sweep.model),
-            sweep.parameter,
-            np.array(sweep.values),
-            self.speeds,
-        )
-        for speed in self.speeds:
-            for probe in sweep.probes:
-                yield from parts_of(sweep.models[probe].system(float(speed)))
+        yield from (repr(sweep.model), sweep.parameter, np.array(sweep.values), self.speed)
+        for system in self.probed:
+            yield from parts_of(system)
 
-    def compute(self) -> FloatArray:
-        """Spectral radii, shape (V, speeds)."""
-        columns = [_model_column(self.sweep, speed, self.alone) for speed in self.speeds.tolist()]
-        return np.stack(columns, axis=1)
+    @property
+    def probed(self) -> list[PeriodicSystem]:
+        """Systems of the first, the middle and the last value."""
+        return [model.system(self.speed) for model in self.sweep.probed]
+
+    @property
+    def variable(self) -> FloatArray:
+        """Values of the parameter, (V,)."""
+        return np.array(self.sweep.values)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether matrices are smooth functions of them."""
+        return not self.alone
+
+    @property
+    def scale(self) -> FloatArray:
+        """Coordinates in which entries are of comparable size."""
+        return Family(self.probed[:1]).scale
+
+    def matrices(self, method: Method, scale: FloatArray) -> Evaluate:
+        """Transition matrices at values of the parameter."""
+        return family_matrices(lambda value: self.sweep.model_at(value).system(self.speed), method, scale)
+
+    def radii(self, method: Method | None) -> FloatArray:
+        """Spectral radii, (V,)."""
+        if self.alone or _cell_by_cell(self.sweep, self.probed):
+            cells = (model.system(self.speed) for model in self.sweep.models)
+            return np.array([_spectral_radius(cell, method) for cell in cells])
+        return _column_radii(self, method)
+
+
+_Column = _LoadColumn | _ModelColumn
+
+
+def _column_radii(column: _Column, method: Method | None) -> FloatArray:
+    scale = column.scale
+    return with_method(
+        method, lambda chosen: column_of(column.matrices(chosen, scale), column.variable, column.smooth)
+    )
+
+
+Place = tuple[slice, slice]
 
 
 @dataclass(frozen=True, eq=False)
-class _Row(_ModelChunk):
-    """A single value at all speeds."""
+class _Chunk:
+    """Neighbouring columns."""
+
+    place: Place
+    columns: tuple[_Column, ...]
+    method: Method | None
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on."""
+        yield repr(self.method)
+        for column in self.columns:
+            yield from column.content()
 
     def compute(self) -> FloatArray:
-        """Spectral radii, shape (1, speeds)."""
-        (model,) = self.sweep.models
-        return _row(model, self.speeds, self.sweep.method)[np.newaxis]
+        """Spectral radii, shape (V, columns)."""
+        return np.stack([column.radii(self.method) for column in self.columns], axis=1)
 
 
-_Task = _LoadChunk | _ModelChunk
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """Columns between two values of slowness, which a sheet may be laid through, and how."""
+
+    low: float
+    high: float
+    degree: int
+    method: Method
+    scale: FloatArray
+    tolerance: float
+
+    def content(self) -> Iterator[Any]:
+        """Everything that a sheet depends on besides its columns."""
+        yield from (self.low, self.high, self.degree, repr(self.method), self.scale, self.tolerance)
 
 
-def _goes_along_speed(
-    sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None, first: Sequence[PeriodicSystem]
-) -> bool:
-    """Tell whether series along speed take fewer matrices than any along the parameter; loads share theirs."""
-    if speeds.size <= _COLUMN_MATRICES or loads is not None:
-        return False
-    motions = FrozenMotions.of(sweep.models[-1], 1.0 / float(speeds[-1]), 1.0 / float(speeds[0]))
-    count = len(sweep.values)
-    cells = count if _cell_by_cell(sweep, first) else min(count, _COLUMN_MATRICES)
-    return count * motions.matrices < speeds.size * cells
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """Samples of a sheet at one speed."""
+
+    window: _Window
+    column: _Column
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on."""
+        yield from self.window.content()
+        yield from self.column.content()
+
+    def compute(self) -> FloatArray:
+        """See :func:`facegear.floquet.sheets.samples`; nothing where the method does not apply."""
+        window, column = self.window, self.column
+        try:
+            evaluate = column.matrices(window.method, window.scale)
+            return samples(evaluate, column.variable, column.smooth)
+        except UnsuitableSystemError:
+            return np.empty((0, *window.scale.shape))
 
 
-def _cell_by_cell(sweep: _Sweep, systems: Sequence[PeriodicSystem]) -> bool:
-    """Whether a column is no smooth function of its parameter, which counts something or moves breakpoints."""
-    few = len(sweep.values) <= len(sweep.probes) or is_whole_number(sweep.model, sweep.parameter)
-    return few or any(not _same_layout(systems[0], other) for other in systems[1:])
+@dataclass(frozen=True, eq=False)
+class _SheetChunk(_Chunk):
+    """Neighbouring columns of a sheet."""
+
+    window: _Window
+    sheet: Sheet
+    speeds: tuple[float, ...]
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on."""
+        yield from self.window.content()
+        yield from super().content()
+
+    def compute(self) -> FloatArray:
+        """Spectral radii, shape (V, columns), column by column if one of them belies the sheet."""
+        variable = self.columns[0].variable
+        matrices = (self.sheet.matrices(speed, variable) for speed in self.speeds)
+        radii = np.stack([spectral_radii(column) for column in matrices], axis=1)
+        return radii if self._is_right(radii) else super().compute()
+
+    def _is_right(self, radii: FloatArray) -> bool:
+        """Whether two cells of the middle column, that of the largest radius among them, are those of the sheet."""
+        middle = len(self.columns) // 2
+        column = self.columns[middle]
+        chosen = np.unique([int(radii[:, middle].argmax()), int(0.382 * len(radii))])
+        own = column.matrices(self.window.method, self.window.scale)(column.variable[chosen])
+        found = self.sheet.matrices(self.speeds[middle], column.variable)[chosen]
+        return agree(found, own)
 
 
-def _rows(sweep: _Sweep, speeds: FloatArray) -> list[_Task]:
-    """Prepare one row for each value."""
+@dataclass(frozen=True, eq=False)
+class _Laid:
+    """Neighbouring columns, and the samples of the sheet that may be laid through them."""
+
+    rows: slice
+    start: int
+    speeds: tuple[float, ...]
+    columns: tuple[_Column, ...]
+    window: _Window
+    samples: tuple[_Samples, ...]
+    method: Method | None
+
+    def chunks(self, found: Sequence[FloatArray]) -> list[_Chunk]:
+        """Prepare the columns, on the sheet through what was found if that is smooth."""
+        column, window = self.columns[0], self.window
+        variable = column.variable
+        ends = None
+        if is_interpolated(variable, column.smooth):
+            ends = float(variable.min()), float(variable.max())
+        sheet = Sheet.through(window.low, window.high, found, ends, window.tolerance)
+        if sheet is None:
+            return _in_chunks(self.rows, self.start, self.columns, self.method)
+        parts = (slice(k, k + _SHEET_CHUNK) for k in range(0, len(self.columns), _SHEET_CHUNK))
+        return [
+            _SheetChunk(
+                (
+                    self.rows,
+                    slice(self.start + part.start, self.start + part.start + len(self.columns[part])),
+                ),
+                self.columns[part],
+                self.method,
+                window,
+                sheet,
+                self.speeds[part],
+            )
+            for part in parts
+        ]
+
+
+def _in_chunks(rows: slice, start: int, columns: Sequence[_Column], method: Method | None) -> list[_Chunk]:
+    """Group columns, the first of which has the number `start`."""
     return [
-        _Row((slice(i, i + 1), slice(None)), replace(sweep, values=(value,)), speeds)
-        for i, value in enumerate(sweep.values)
+        _Chunk((rows, slice(start + k, start + k + len(part))), tuple(part), method)
+        for k in range(0, len(columns), _CHUNK)
+        for part in [columns[k : k + _CHUNK]]
     ]
 
 
-def _chunks(
+def _layout(
     sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None, first: Sequence[PeriodicSystem]
-) -> list[_Task]:
-    """Prepare neighbouring columns for the fastest route that suits them.
+) -> tuple[list[_Chunk], list[_Laid]]:
+    """Prepare columns of all speeds: those that are computed, and those that may be read off sheets.
+
+    Values that are no smooth function of the parameter have sheets of their own, where these pay.
+    """
+    swept = None
+    if loads is not None:
+        swept = LoadSweep.of(first[0], LoadColumn(*loads.transpose(1, 0, 2)))
+    alone = swept is None and _cell_by_cell(sweep, first)
+    parts = [(slice(None), sweep)]
+    if alone:
+        parts = [(slice(i, i + 1), replace(sweep, values=(v,))) for i, v in enumerate(sweep.values)]
+    planned = [windows(_motions(part, speeds), speeds) if speeds.size > 1 else [] for _, part in parts]
+    if not any(planned):
+        parts, planned = [(slice(None), sweep)], [[]]
+    chunks: list[_Chunk] = []
+    laid: list[_Laid] = []
+    for (rows, part), found in zip(parts, planned, strict=True):
+        stop = speeds.size
+        columns = _columns(part, swept, alone)
+        for inside, degree in found:
+            sheet = _lay(part, rows, inside, speeds, degree, columns)
+            if sheet is None:
+                break
+            laid.append(sheet)
+            stop = inside.start
+        chunks += _in_chunks(rows, 0, columns(speeds[:stop]), sweep.method)
+    return chunks, laid
+
+
+def _motions(sweep: _Sweep, speeds: FloatArray) -> FrozenMotions:
+    """Motions of the first, the middle and the last value."""
+    low, high = 1.0 / float(speeds[-1]), 1.0 / float(speeds[0])
+    frozen = [FrozenMotions.of(model, low, high).exponents for model in sweep.probed]
+    return FrozenMotions(low, high, np.concatenate(frozen))
+
+
+def _columns(sweep: _Sweep, swept: LoadSweep | None, alone: bool) -> Callable[[FloatArray], list[_Column]]:
+    """Columns at speeds.
 
     Load parameters are those of all values at the first speed; at the others the first, middle and last value show
     whether they, or anything else, depend on both speed and value.
     """
-    tasks: list[_Task] = []
-    alone = _cell_by_cell(sweep, first)
-    for start in range(0, speeds.size, _CHUNK):
-        part = slice(start, start + _CHUNK)
-        place = (slice(None), part)
-        if loads is not None:
-            probed = [
-                [sweep.models[probe].system(speed) for probe in sweep.probes]
-                for speed in speeds[part].tolist()
-            ]
-            expected = loads[list(sweep.probes)]
-            if all(np.array_equal(_or_empty(sweep.load_parameters(row)), expected) for row in probed):
-                tasks.append(_LoadChunk(place, tuple(row[0] for row in probed), loads, sweep.method))
-                continue
-        # A fresh copy: models that have been built need not travel to other processes.
-        tasks.append(_ModelChunk(place, replace(sweep), speeds[part], alone))
-    return tasks
+    if swept is not None:
+        expected = swept.column.stacked()[list(sweep.probes)]
+    # A fresh copy: models that have been built need not travel to other processes.
+    own = replace(sweep)
+
+    def columns(speeds: FloatArray) -> list[_Column]:
+        found: list[_Column] = []
+        for speed in speeds.tolist():
+            if swept is not None:
+                probed = [model.system(speed) for model in sweep.probed]
+                parameters = sweep.load_parameters(probed)
+                if parameters is not None and np.array_equal(parameters.reshape(expected.shape), expected):
+                    found.append(_LoadColumn(probed[0], swept))
+                    continue
+            found.append(_ModelColumn(own, speed, alone))
+        return found
+
+    return columns
+
+
+def _lay(
+    sweep: _Sweep,
+    rows: slice,
+    inside: slice,
+    speeds: FloatArray,
+    degree: int,
+    columns: Callable[[FloatArray], list[_Column]],
+) -> _Laid | None:
+    """Prepare a sheet through some columns, or None if they are not all of one kind."""
+    part = speeds[inside]
+    low, high = 1.0 / float(part[-1]), 1.0 / float(part[0])
+    own, sampled = columns(part), columns(1.0 / ChebyshevSeries.points_of(low, high, degree))
+    if any(type(column) is not type(own[0]) for column in own + sampled):
+        return None
+    slowest, fastest = (Family([sweep.probed[-1].system(v)]) for v in (float(part[0]), float(part[-1])))
+
+    def tried(method: Method) -> Method:
+        method.scaled_transition_matrices(fastest)
+        return method
+
+    method = with_method(sweep.method, tried)
+    # No series resolves rounding, which is largest in the longest period.
+    rounding = rounding_error(np.eye(len(fastest.scale)), slowest, method)
+    tolerance = max(SHEET_TOLERANCE, 4.0 * rounding)
+    window = _Window(low, high, degree, method, fastest.scale, tolerance)
+    return _Laid(
+        rows,
+        inside.start,
+        tuple(part.tolist()),
+        tuple(own),
+        window,
+        tuple(_Samples(window, column) for column in sampled),
+        sweep.method,
+    )
 
 
 def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray:
@@ -386,52 +614,10 @@ def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray
     return np.asarray(turned[:, np.newaxis] / speeds, dtype=float)
 
 
-def _or_empty(loads: FloatArray | None) -> FloatArray:
-    return np.empty(0) if loads is None else loads
-
-
-def _model_column(sweep: _Sweep, speed: float, alone: bool) -> FloatArray:
-    """Spectral radii along one column, shape (V,); `alone` if values are known to share no breakpoints."""
-    systems = [sweep.models[probe].system(speed) for probe in sweep.probes]
-    if alone or _cell_by_cell(sweep, systems):
-        return np.array([_spectral_radius(model.system(speed), sweep.method) for model in sweep.models])
-    # Coordinates in which entries are of comparable size, the same for the whole column.
-    scale = Family(systems[:1]).scale
-    return with_method(sweep.method, lambda method: _interpolated_column(sweep, speed, method, scale))
-
-
-def _interpolated_column(sweep: _Sweep, speed: float, method: Method, scale: FloatArray) -> FloatArray:
-    """Spectral radii along one column from transition matrices at some of its values, shape (V,)."""
-    values = np.array(sweep.values)
-
-    def evaluate(chosen: FloatArray) -> FloatArray:
-        matrices = transition_matrices([sweep.model_at(v).system(speed) for v in chosen.tolist()], method)
-        return np.asarray(scale @ matrices @ np.linalg.inv(scale), dtype=float)
-
-    radii = interpolated_spectral_radii(evaluate, values)
-    return _witnessed(radii, [partial(model.system, speed) for model in sweep.models], method)
-
-
-def _row(model: Model, speeds: FloatArray, method: Method | None) -> FloatArray:
-    """Spectral radii along one row from transition matrices at some speeds, shape (S,)."""
-    cells = [partial(model.system, speed) for speed in speeds.tolist()]
-    low, high = (1.0 - _BEYOND) * float(speeds[0]), (1.0 + _BEYOND) * float(speeds[-1])
-    try:
-        radii = MultiplierCurve.of(model, low, high, method).spectral_radii(speeds)
-    except ArithmeticError:  # not smooth in speed
-        radii = np.full(speeds.size, np.nan)
-    return _witnessed(radii, cells, method)
-
-
-def _witnessed(
-    radii: FloatArray, cells: Sequence[Callable[[], PeriodicSystem]], method: Method | None
-) -> FloatArray:
-    """Interpolated spectral radii, or those of each system alone if one of them belies the others."""
-    # Smooth to the samples is not yet smooth: one cell between them tells.
-    witness = int(0.382 * radii.size)
-    if abs(radii[witness] - _spectral_radius(cells[witness](), method)) <= _INTERPOLATION_CHECK:
-        return radii
-    return np.array([_spectral_radius(cell(), method) for cell in cells])
+def _cell_by_cell(sweep: _Sweep, systems: Sequence[PeriodicSystem]) -> bool:
+    """Whether a column is no smooth function of its parameter, which counts something or moves breakpoints."""
+    few = len(sweep.values) <= len(sweep.probes) or is_whole_number(sweep.model, sweep.parameter)
+    return few or any(not _same_layout(systems[0], other) for other in systems[1:])
 
 
 def _same_layout(one: PeriodicSystem, other: PeriodicSystem) -> bool:

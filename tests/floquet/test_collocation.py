@@ -268,7 +268,8 @@ def test_interpolation_evaluates_few_points_of_a_long_column():
         return np.cos(x)[:, None, None]
 
     interpolated_spectral_radii(evaluate, np.linspace(0.0, 1.0, 500))
-    assert sum(asked) <= 17
+    # Those of the series, and three that check it.
+    assert sum(asked) <= 17 + 3
 
 
 @given(
@@ -294,28 +295,8 @@ def test_decaying_modes_change_no_spectral_radius(seed, decay, bend, leading):
     )
 
 
-def test_only_the_leading_block_is_interpolated_where_the_others_decay(monkeypatch):
-    rng = np.random.default_rng(1)
-    change = 0.02 * rng.standard_normal((6, 6))
-    start = np.diag([1.0, 0.98, 0.96, 0.3, 0.2, 0.0])
-    sizes = []
-    eigenvalues = np.linalg.eigvals
-
-    def recorded(matrices):
-        sizes.append(matrices.shape)
-        return eigenvalues(matrices)
-
-    points = np.linspace(0.0, 1.0, 300)
-    matrices = start + points[:, None, None] * change
-    with monkeypatch.context() as patch:
-        patch.setattr(np.linalg, "eigvals", recorded)
-        radii = interpolated_spectral_radii(lambda x: start + x[:, None, None] * change, points)
-    assert sizes == [(300, 3, 3)]
-    assert np.abs(radii - largest_modulus(matrices)).max() < 1e-10
-
-
-def test_a_rigid_body_motion_is_not_cut_in_two():
-    """Two multipliers of 1 with one vector: the span of their vectors is not known."""
+def test_a_rigid_body_motion_is_interpolated_with_the_others():
+    """Two multipliers of 1 with one vector: known to the root of rounding."""
 
     def evaluate(x):
         matrices = np.zeros((x.size, 6, 6))

@@ -1,6 +1,6 @@
 """Loads of every kind through every method: weights, masses with kicks, jumps of the state, transformed functions."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -14,6 +14,7 @@ from facegear.floquet.multipliers import (
     Magnus,
     Stepwise,
     error_estimate,
+    growth_rate,
     multipliers,
     transition_matrix,
 )
@@ -21,6 +22,7 @@ from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump, wi
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.floquet.stepping import Family
+from facegear.maps.stability_map import stability_map
 from tests.independent.monodromy import integrated
 
 METHODS = (Collocation(), AdaptiveMagnus(1e-12), Radau(16, 1e-13))
@@ -128,6 +130,29 @@ def test_a_jump_of_the_state_by_hand():
     system = PeriodicSystem([[1.0]], [[0.0]], [[1.0]], (), 1.5 * np.pi, jumps=(StateJump(0.5, quarter),))
     for method in (*METHODS, Magnus(8), AlignedStepwise(8)):
         np.testing.assert_allclose(transition_matrix(system, method), -np.eye(2), atol=1e-11)
+
+
+@dataclass(frozen=True)
+class Knocked:
+    """All there is, and a jump of the state of a strength that is swept; or a load, or a matrix."""
+
+    strength: float = 0.1
+    mass: float = 0.4
+    damping: float = 0.1
+
+    def system(self, speed):
+        system = rich(3, 2, self.damping).replace_loads(mass=[self.mass, 0.3, 0.0])
+        jump = StateJump(0.55, np.eye(4) + self.strength * np.diag([0.0, 0.0, 1.0, -1.0]))
+        return replace(system, jumps=(jump,), period=2.0 / speed)
+
+
+@pytest.mark.parametrize(("parameter", "high"), [("strength", 0.3), ("mass", 0.8), ("damping", 0.4)])
+def test_maps_sweep_jumps_and_masses_under_weights(parameter, high):
+    values, speeds = np.linspace(0.0, high, 31), np.linspace(0.8, 1.3, 31)
+    chart = stability_map(Knocked(), speeds, parameter, values, jobs=1)
+    for i, j in ((0, 0), (7, 29), (16, 11), (30, 30), (22, 3)):
+        cell = growth_rate(replace(Knocked(), **{parameter: values[i]}).system(speeds[j]))
+        assert float(chart[i, j]) == pytest.approx(cell, abs=1e-8)
 
 
 def test_a_kick_and_a_jump_of_one_instant_come_in_this_order():

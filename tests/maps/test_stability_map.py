@@ -176,7 +176,7 @@ def test_only_load_parameters_take_the_shared_column(monkeypatch):
     def refuse(*arguments):
         raise AssertionError("column of load parameters expected")
 
-    monkeypatch.setattr(maps, "_model_column", refuse)
+    monkeypatch.setattr(maps._ModelColumn, "radii", refuse)
     stability_map(TRANSVERSE, [10.0], "mass", [0.1, 0.2], jobs=1)
     with pytest.raises(AssertionError, match="column of load parameters"):
         stability_map(TRANSVERSE, [10.0], "thickness_ratio", [0.03, 0.04], jobs=1)

@@ -15,11 +15,16 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = tomllib.loads((ROOT / "uv.lock").read_text(encoding="utf-8"))
 CONDA = yaml.safe_load((ROOT / "environment.yml").read_text(encoding="utf-8"))
 GROUPS = {"": PROJECT["project"]["dependencies"], **PROJECT["dependency-groups"]}
+EXTRAS = PROJECT["project"]["optional-dependencies"]
 
 
 def bounds(requirements: list[str]) -> dict[str, SpecifierSet]:
     parsed = [Requirement(text) for text in requirements]
     return {canonicalize_name(requirement.name): requirement.specifier for requirement in parsed}
+
+
+def bounds_of(rows: list[dict[str, str]]) -> dict[str, SpecifierSet]:
+    return {row["name"]: SpecifierSet(row.get("specifier", "")) for row in rows}
 
 
 def test_environment_yml_agrees_with_pyproject() -> None:
@@ -38,9 +43,17 @@ def test_environment_yml_installs_the_package_itself_and_nothing_else_through_pi
 def test_lock_file_was_made_from_this_pyproject(group: str) -> None:
     (entry,) = [package for package in LOCK["package"] if package["name"] == PROJECT["project"]["name"]]
     metadata = entry["metadata"]
-    listed = metadata["requires-dev"][group] if group else metadata["requires-dist"]
-    locked = {row["name"]: SpecifierSet(row.get("specifier", "")) for row in listed}
-    assert locked == bounds(GROUPS[group])
+    needed = [row for row in metadata["requires-dist"] if "marker" not in row]
+    listed = metadata["requires-dev"][group] if group else needed
+    assert bounds_of(listed) == bounds(GROUPS[group])
+
+
+@pytest.mark.parametrize("extra", EXTRAS)
+def test_lock_file_has_the_extras_and_the_book_what_they_bring(extra: str) -> None:
+    (entry,) = [package for package in LOCK["package"] if package["name"] == PROJECT["project"]["name"]]
+    listed = [row for row in entry["metadata"]["requires-dist"] if row.get("marker") == f"extra == '{extra}'"]
+    assert bounds_of(listed) == bounds(EXTRAS[extra])
+    assert bounds(EXTRAS[extra]).items() <= bounds(GROUPS["book"]).items()
 
 
 @pytest.mark.parametrize("group", GROUPS)

@@ -1,0 +1,107 @@
+"""Sheets of a map: transition matrices as smooth functions of speed and of a swept parameter, interpolated along both.
+
+Along speed the variable is the slowness 1/speed, as in :mod:`facegear.floquet.multiplier_curves`. At its Chebyshev
+points the matrices are sampled along the parameter, as those of a column are; between them samples are interpolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from facegear.floquet.columns import Evaluate, resolvable, resolved
+from facegear.floquet.multiplier_curves import FrozenMotions
+from facegear.floquet.series import ChebyshevSeries
+from facegear.support.types import FloatArray
+
+#: Size of the last Chebyshev coefficients along either axis, relative to the largest entry or 1.
+SHEET_TOLERANCE = 1e-11
+# Fewer speeds than this are columns.
+_FEWEST_SPEEDS = 24
+# Speeds that a sheet must have for each of its Chebyshev points: these crowd where speeds are slow, and cost most.
+_SPEEDS_A_POINT = 2
+# Places at which a sheet is tried to end.
+_TRIALS = 16
+
+
+def windows(motions: FrozenMotions, speeds: FloatArray) -> list[tuple[slice, int]]:
+    """Parts of ascending speeds in each of which a sheet takes few columns, and its degree along slowness."""
+    found: list[tuple[slice, int]] = []
+    stop = speeds.size
+    while stop >= _FEWEST_SPEEDS:
+        starts = np.unique(np.linspace(0, stop - _FEWEST_SPEEDS, _TRIALS).astype(int)).tolist()
+        degrees = [motions.degree(1.0 / speeds[stop - 1], 1.0 / speeds[start]) for start in starts]
+        saved = [
+            stop - start - _SPEEDS_A_POINT * (degree + 1)
+            for start, degree in zip(starts, degrees, strict=True)
+        ]
+        best = int(np.argmax(saved))
+        if saved[best] <= 0:
+            break
+        found.append((slice(starts[best], stop), degrees[best]))
+        stop = starts[best]
+    return found
+
+
+def samples(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArray:
+    """Matrices along a column, at Chebyshev points of its variable, or at all its values where it is not interpolated.
+
+    Returns
+    -------
+    array, shape (K + 1, d, d) or (V, d, d)
+        Nothing, (0, d, d), where the column is not smooth enough for fewer matrices than values.
+    """
+    if not is_interpolated(variable, smooth):
+        return evaluate(variable)
+    series = resolved(evaluate, variable, SHEET_TOLERANCE)
+    return evaluate(variable[:1])[:0] if series is None else series.values
+
+
+def is_interpolated(variable: FloatArray, smooth: bool) -> bool:
+    """Whether :func:`samples` are those of a series."""
+    return smooth and resolvable(variable)
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Transition matrices against slowness and the variable of a column.
+
+    Attributes
+    ----------
+    along_speed : ChebyshevSeries
+        Along slowness, its values the :func:`samples`, (K + 1, ..., d, d).
+    ends : tuple of float, optional
+        Of the variable, between which samples are interpolated.
+    """
+
+    along_speed: ChebyshevSeries
+    ends: tuple[float, float] | None
+
+    @classmethod
+    def through(
+        cls,
+        low: float,
+        high: float,
+        columns: Sequence[FloatArray],
+        ends: tuple[float, float] | None,
+        tolerance: float,
+    ) -> Sheet | None:
+        """Interpolate :func:`samples` at the Chebyshev points between two values of slowness, if that is enough."""
+        most = max(len(column) for column in columns)
+        if any(column.size == 0 for column in columns):
+            return None
+        if ends is not None:
+            points = ChebyshevSeries.points_of(*ends, most - 1)
+            columns = [
+                column if len(column) == most else ChebyshevSeries(*ends, column)(points)
+                for column in columns
+            ]
+        series = ChebyshevSeries(low, high, np.stack(columns))
+        return cls(series, ends) if series.tail <= tolerance else None
+
+    def matrices(self, speed: float, variable: FloatArray) -> FloatArray:
+        """Transition matrices at a speed [rad/s] and values (V,) of the variable, all of them where `ends` is None."""
+        found = self.along_speed(1.0 / speed)
+        return found if self.ends is None else ChebyshevSeries(*self.ends, found)(variable)
