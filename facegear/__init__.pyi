@@ -16,6 +16,8 @@ from .geometry.drive import Drive as Drive
 from .geometry.kinematics import ContactPath as ContactPath
 from .geometry.kinematics import SkewLine as SkewLine
 from .geometry.phases import phase_split as phase_split
+from .geometry.point_contact import Misalignment as Misalignment
+from .geometry.point_contact import UnloadedContact as UnloadedContact
 from .maps.response_map import frequency_response as frequency_response
 from .maps.response_map import response_map as response_map
 from .maps.stability_map import stability_map as stability_map
@@ -45,11 +47,13 @@ __all__ = [
     "Excited",
     "Gearbox",
     "MeshLoad",
+    "Misalignment",
     "PeriodicSystem",
     "PiecewiseChebyshev",
     "SkewLine",
     "Torsional",
     "Transverse",
+    "UnloadedContact",
     "WithoutRigidMotion",
     "critical_thickness",
     "error_estimate",

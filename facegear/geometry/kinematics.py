@@ -233,6 +233,10 @@ class ContactPath(TimedPairs):
 
     has_lengths: ClassVar[bool] = True
 
+    def __post_init__(self) -> None:
+        self.drive.require_line_contact(type(self).__name__)
+        super().__post_init__()
+
     @property
     def angular_travel(self) -> float:
         """Travel about the gear's axis over that of the true sweep: cr over the geometric contact ratio."""

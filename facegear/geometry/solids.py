@@ -83,7 +83,7 @@ def pinion(drive: Drive, rotation: float = 0.0, points_per_flank: int = 6) -> Me
     outline = pinion_outline(drive, points_per_flank)
     count = len(outline)
     # R1 and R2 lie this far along the pinion's axis where it meets the pitch cone.
-    offset = drive.pitch_radius / np.tan(drive.shaft_angle)
+    offset = drive.generating.pitch_radius / np.tan(drive.shaft_angle)
     along = (drive.inner_limit + offset, drive.outer_limit + offset)
     ends = [np.column_stack([outline, np.full(count, end)]) for end in along]
     centres = np.array([[0.0, 0.0, end] for end in along])
@@ -97,6 +97,7 @@ def pinion(drive: Drive, rotation: float = 0.0, points_per_flank: int = 6) -> Me
     inner = np.column_stack([np.full(count, 2 * count), after, here])
     outer = np.column_stack([np.full(count, 2 * count + 1), here + count, after + count])
     vertices = shaper_to_fixed(drive.contact_region, np.vstack([*ends, centres]), rotation)
+    vertices += shaper_to_fixed(drive.contact_region, [0.0, -drive.axis_offset, 0.0], 0.0)
     return Mesh(vertices, np.vstack([*sides, inner, outer]))
 
 

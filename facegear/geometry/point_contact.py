@@ -1,0 +1,579 @@
+"""Contact at a point: a face gear cut by a shaper with more teeth than the pinion, as long as nothing is loaded.
+
+A point of the face gear's flank is named by the local pressure angle q = φ + θ0s + θs where the shaper made it and
+its roll angle θs. At constant q the point being made moves along its own normal N = −(cos q, sin q, 0), which stands
+still (:mod:`facegear.symbolic.point_contact` derives it). So whether a normal of the flank touches the pinion's base
+circle, which is all that contact with an involute asks for, does not depend on θs: for any position of two rigid gears
+it is one equation A(q) = 0. Its root holds all through the mesh; the path of contact is a straight line of action, and
+the gears turn in their exact ratio.
+
+Coordinates are those of the shaper at rest in space: z along its axis outwards, the face gear's axis along
+k = (0, sin γ_m, cos γ_m), γ_m = 180° − γ.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+from scipy.special import elliprd, elliprf
+
+from facegear.geometry.contact_lines import ContactRegion
+from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import PairStates, TimedPairs
+from facegear.support.parameters import finite, finite_array, keep, nonnegative, positive
+from facegear.support.types import FloatArray
+
+# Local pressure angles between which contact is looked for [rad], and into how many parts.
+_STEEPEST, _PARTS = 1.5, 600
+
+
+@dataclass(frozen=True)
+class Misalignment:
+    """Position of a rigid pinion and face gear against their nominal one.
+
+    Parameters
+    ----------
+    offset : float
+        ΔE, displacement of the pinion's axis square to both axes [m], towards +x; for the other flank it counts the
+        other way.
+    gear_axial : float
+        Δq, displacement of the face gear along its axis [m], positive towards the pinion.
+    pinion_axial : float
+        Δb, displacement of the pinion along its axis [m]; an involute cylinder does not mind.
+    shaft_angle : float
+        Δγ by which the shafts stand further apart [rad]: positive opens the outer end of the teeth.
+    pivot : float, optional
+        z_v on the pinion's axis [m], about which Δγ turns it; None where the axes meet.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a value is not a finite number, or the angle more than 0.1 rad.
+    """
+
+    offset: float = 0.0
+    gear_axial: float = 0.0
+    pinion_axial: float = 0.0
+    shaft_angle: float = 0.0
+    pivot: float | None = None
+
+    def __post_init__(self) -> None:
+        for part in fields(self):
+            value = getattr(self, part.name)
+            if value is not None:
+                unit = "rad" if part.name == "shaft_angle" else "m"
+                keep(self, **{part.name: finite(part.name, value, unit)})
+        if abs(self.shaft_angle) > 0.1:
+            raise ValueError(
+                f"shaft_angle must be at most 0.1 rad either way, as errors of alignment are; got {self.shaft_angle!r}"
+            )
+
+
+ALIGNED = Misalignment()
+"""Both gears where they belong."""
+
+
+@dataclass(frozen=True)
+class Ellipse:
+    """Contact ellipse of two elastic bodies pressed together (Hertz).
+
+    Attributes
+    ----------
+    long, short : float
+        Semi-axes [m].
+    approach : float
+        By which bodies come nearer [m].
+    pressure : float
+        In the middle [Pa].
+    """
+
+    long: float
+    short: float
+    approach: float
+    pressure: float
+
+
+@dataclass(frozen=True)
+class UnloadedContact:
+    """Contact of a pinion and a face gear cut by a shaper with more teeth, without load.
+
+    Parameters
+    ----------
+    drive : Drive
+        Its `shaper_teeth` exceed `pinion_teeth`.
+    misalignment : Misalignment
+        Default: none.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If contact is along lines, if the gears do not touch on their flanks anywhere, or only at an edge of the tooth,
+        naming which.
+
+    Examples
+    --------
+    >>> contact = UnloadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27))
+    >>> round(1e3 * contact.position, 3), round(contact.contact_ratio, 6)
+    (206.375, 1.557364)
+    """
+
+    drive: Drive
+    misalignment: Misalignment = field(default=ALIGNED)
+
+    def __post_init__(self) -> None:
+        for name, kind in (("drive", Drive), ("misalignment", Misalignment)):
+            if not isinstance(getattr(self, name), kind):
+                raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
+        if self.drive.has_line_contact:
+            raise ValueError(
+                f"drive.shaper_teeth must exceed pinion_teeth={self.drive.pinion_teeth} for contact at a point; with "
+                "as many teeth it is along lines"
+            )
+        lowest, highest = self._rolls
+        if lowest >= highest:
+            raise ValueError(
+                f"misalignment leaves no contact on the flank: at −y_p = {1e3 * self._radius_of(lowest):.3f} mm it is "
+                f"{self._beyond(lowest)}; {self.misalignment!r}"
+            )
+
+    # --- where ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def pressure_angle(self) -> float:
+        """Local pressure angle q of the contact [rad], the same all through the mesh."""
+        rising = [q for q in self.roots if self._residual(q + 1e-6) > self._residual(q - 1e-6)]
+        if not rising:
+            raise ValueError(
+                "misalignment leaves no normal of the flank that touches the pinion's base circle: its teeth and those "
+                f"of the gear do not meet; {self.misalignment!r}"
+            )
+        # Of several the one next to the nominal pressure angle.
+        return min(rising, key=lambda q: abs(q - self.drive.pressure_angle))
+
+    @cached_property
+    def roots(self) -> tuple[float, ...]:
+        """All local pressure angles at which a normal touches the pinion's base circle [rad], ascending.
+
+        Where the distance rises through it flanks touch from outside; where it falls they would have to cross.
+        """
+        angles = np.linspace(-_STEEPEST, _STEEPEST, _PARTS + 1)
+        values = self._residual(angles)
+        change = np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))
+        return tuple(
+            float(brentq(self._residual, angles[i], angles[i + 1], xtol=1e-16, rtol=8.9e-16)) for i in change
+        )
+
+    @property
+    def position(self) -> float:
+        """Coordinate u along the shaper's axis at which the flank touches [m], the same all through the mesh."""
+        return float(self._region.position(self.pressure_angle))
+
+    # --- when -------------------------------------------------------------------------------------------------
+
+    @property
+    def contact_ratio(self) -> float:
+        """Mesh periods that a pair of teeth touches."""
+        lowest, highest = self._rolls
+        return (highest - lowest) * self._shaper.pinion_teeth / (2.0 * math.pi)
+
+    @cached_property
+    def _rolls(self) -> tuple[float, float]:
+        """Roll angles θs of the shaper at which contact ends at the gear's tooth top, and begins at the pinion's tip.
+
+        Between the edges of the face; where the pinion's base circle or the shaper's tip comes first, there.
+        """
+        q, region, shaper = self.pressure_angle, self._region, self._shaper
+        start = float(self._line(q)[2])
+        base, own = shaper.base_radius, self.drive.base_radius
+        lowest = max(0.0, -start / base)
+        highest = min((own * self.drive.pinion_tip_roll - start) / base, shaper.shaper_tip_roll)
+
+        def above(roll: float) -> float:
+            return float(region.depth(q, roll)) - shaper.tooth_top_distance
+
+        def inside(roll: float) -> float:
+            return self._radius_of(roll) - max(shaper.inner_radius, shaper.flank_start)
+
+        def outside(roll: float) -> float:
+            return shaper.outer_radius - self._radius_of(roll)
+
+        for function in (above, inside, outside):
+            lowest, highest = _where_positive(function, lowest, highest)
+        return lowest, highest
+
+    def _radius_of(self, roll: float) -> float:
+        """−y_p of a point on the line of contact where it was made [m]."""
+        return float(self._region.radial_position(self.pressure_angle, roll))
+
+    def _beyond(self, roll: float) -> str:
+        radius, shaper = self._radius_of(roll), self._shaper
+        if radius < max(shaper.inner_radius, shaper.flank_start):
+            return f"inside the inner edge at {1e3 * shaper.inner_radius:.3f} mm, where an edge bears"
+        if radius > shaper.outer_radius:
+            return f"outside the outer edge at {1e3 * shaper.outer_radius:.3f} mm, where an edge bears"
+        return "off the height of the tooth, where its top or the pinion's tip bears"
+
+    # --- the pair of gears ------------------------------------------------------------------------------------
+
+    @property
+    def _shaper(self) -> Drive:
+        return self.drive.generating
+
+    @property
+    def _region(self) -> ContactRegion:
+        return self._shaper.contact_region
+
+    @cached_property
+    def _gear_axis(self) -> FloatArray:
+        supplement = math.pi - self.drive.shaft_angle
+        return np.array([0.0, math.sin(supplement), math.cos(supplement)])
+
+    @cached_property
+    def _pinion_axis(self) -> tuple[FloatArray, FloatArray]:
+        """A point of the pinion's axis, and its direction."""
+        given, offset = self.misalignment, self.drive.axis_offset
+        pivot = offset / math.tan(self.drive.shaft_angle) if given.pivot is None else given.pivot
+        at = np.array([given.offset, -offset, pivot]) - given.gear_axial * self._gear_axis
+        return at, np.array([0.0, math.sin(given.shaft_angle), math.cos(given.shaft_angle)])
+
+    def _turn(self, q: ArrayLike) -> FloatArray:
+        """ψ, by which the gear turns from where the shaper made q until the normal is square to the pinion [rad]."""
+        normal, axis, k = _normal(q), self._pinion_axis[1], self._gear_axis
+        along = (normal @ k) * float(k @ axis)
+        cosine, sine = normal @ axis - along, _cross(k, normal) @ axis
+        # cosine cos ψ + sine sin ψ + along = 0, of which the smaller root; not a number where there is none.
+        size, phase = np.hypot(cosine, sine), np.arctan2(sine, cosine)
+        with np.errstate(invalid="ignore"):
+            swing = np.arccos(-along / np.where(size > 0.0, size, 1.0))
+        both = np.stack([phase + swing, phase - swing])
+        both = np.where(size > 0.0, (both + math.pi) % (2.0 * math.pi) - math.pi, 0.0)
+        return np.asarray(np.where(np.abs(both[0]) < np.abs(both[1]), *both), dtype=float)
+
+    def _line(self, q: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Lines of action at q of shape S: directions n, S + (3,), distances from the pinion's axis, places of θs = 0.
+
+        These are measured along the line from its foot on the pinion's base circle [m]; a roll angle θs adds r_bs θs.
+        """
+        turn = self._turn(q)
+        base = self._shaper.base_radius
+        components = (base * np.sin(q), -base * np.cos(q), self._region.position(np.asarray(q)))
+        start = np.stack(np.broadcast_arrays(*components), axis=-1)
+        start, normal = (_rotated(vector, self._gear_axis, turn) for vector in (start, _normal(q)))
+        at, axis = self._pinion_axis
+        away = start - at
+        return normal, (away * _cross(axis, normal)).sum(axis=-1), (away * normal).sum(axis=-1)
+
+    def _residual(self, q: ArrayLike) -> FloatArray:
+        """A(q) [m]."""
+        return self._line(q)[1] - self.drive.base_radius
+
+    # --- gap and curvature ------------------------------------------------------------------------------------
+
+    def gap(self, position: ArrayLike) -> FloatArray:
+        """Gap between the flanks along the normal, in slices along the face, the same at every rotation [m].
+
+        Parameters
+        ----------
+        position : array_like
+            u along the shaper's axis [m], at least that of a zero local pressure angle.
+
+        Returns
+        -------
+        ndarray, of the shape of `position`
+            0 at :attr:`position`; a slice is what has one local pressure angle q.
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric, not finite, or where the flank has no point.
+        """
+        u = finite_array("position", position, "m")
+        least = float(self._region.position(0.0))
+        if np.any(u < least):
+            raise ValueError(
+                f"position must be at least {least:.6g} m, where the flank begins; got {u.min():.6g}"
+            )
+        angles = np.arccos(least / u)
+        return self._offset(angles) - self._offset(self.pressure_angle)
+
+    def _offset(self, q: ArrayLike) -> FloatArray:
+        """Gap of the slice at q but for a constant: place of the gear's tangent plane less that of the pinion's [m]."""
+        normal, _, start = self._line(q)
+        shaper, own = self._shaper, self.drive
+        # At one rotation of the gear, θs = q + ψ/m but for a constant; θ1 = q1, the direction of n about the pinion.
+        gear = start + shaper.base_radius * (np.asarray(q) + self._turn(q) / shaper.speed_ratio)
+        across = np.cross(self._pinion_axis[1], [1.0, 0.0, 0.0])
+        own_angle = np.arctan2(-normal @ across, -normal[..., 0])
+        return np.asarray(gear - own.base_radius * own_angle, dtype=float)
+
+    @property
+    def principal_curvatures(self) -> FloatArray:
+        """Principal curvatures of the gap in the middle of the path, ascending, shape (2,) [1/m]."""
+        return self.curvatures(0.5 * sum(self._rolls))
+
+    def curvatures(self, roll: float) -> FloatArray:
+        """Principal curvatures of the gap between pinion and gear about a point of the path, ascending [1/m].
+
+        Parameters
+        ----------
+        roll : float
+            θs of the shaper there [rad], see :attr:`rolls`.
+
+        Returns
+        -------
+        ndarray, shape (2,)
+            The smaller one is that along the face, nearly.
+        """
+        return np.asarray(np.linalg.eigvalsh(self._curvature_tensor(roll)), dtype=float)
+
+    @property
+    def rolls(self) -> FloatArray:
+        """Roll angles θs of the shaper at the ends of the path of contact, ascending, shape (2,) [rad]."""
+        return np.array(self._rolls)
+
+    def _curvature_tensor(self, roll: float) -> FloatArray:
+        """Second derivatives of the gap in the tangent plane, along the pinion's profile and its axis, (2, 2) [1/m]."""
+        q, base = self.pressure_angle, self._shaper.base_radius
+        normal, _, start = self._line(q)
+        axis = self._pinion_axis[1]
+        profile = np.cross(axis, normal)
+        shaper_axis = _rotated(np.array([0.0, 0.0, 1.0]), self._gear_axis, self._turn(q))
+        shaper_profile = np.cross(shaper_axis, normal)
+        # The shaper touches the gear along a line at β to its axis, and is flatter than the gear across it by κ.
+        m, supplement = self._shaper.speed_ratio, math.pi - self.drive.shaft_angle
+        p, k, t = m * math.sin(supplement), 1.0 - m * math.cos(supplement), math.tan(q)
+        rest = k * t * ((1.0 - k) * roll + k * t) - (p * math.cos(q)) ** 2 * roll * (roll - t)
+        kappa = ((k * t / roll) ** 2 + (p * math.cos(q)) ** 2) * roll / (base * rest)
+        beta = math.atan2(roll * p * math.cos(q), k * t)
+        across = math.cos(beta) * shaper_profile - math.sin(beta) * shaper_axis
+        pairs = (
+            (1.0 / (float(start) + base * roll), profile),
+            (-1.0 / (base * roll), shaper_profile),
+            (kappa, across),
+        )
+        frame = np.stack([profile, axis])
+        return np.asarray(sum(size * np.outer(frame @ v, frame @ v) for size, v in pairs), dtype=float)
+
+    def hertz(self, force: float, modulus: float) -> Ellipse:
+        """Contact ellipse under a force, in the middle of the path.
+
+        Parameters
+        ----------
+        force : float
+            Along the normal [N].
+        modulus : float
+            E* [Pa]: 1/E* = (1 − ν1²)/E1 + (1 − ν2²)/E2.
+
+        Returns
+        -------
+        Ellipse
+            By Hertz: the gap is taken for a paraboloid, which hides that it is not symmetric; :meth:`marking_band`
+            uses the true one.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If an argument is not a number greater than 0.
+        """
+        force, modulus = positive("force", force, "N"), positive("modulus", modulus, "Pa")
+        smaller, larger = self.principal_curvatures.tolist()
+        return _hertz(smaller, larger, force, modulus)
+
+    def marking_band(self, depth: float) -> tuple[float, float]:
+        """Find the band along the face where the gap is at most the thickness of marking compound.
+
+        Parameters
+        ----------
+        depth : float
+            Thickness [m], such as 6.35e-6.
+
+        Returns
+        -------
+        inner, outer : float
+            u [m], cut off at the edges of the flank.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `depth` is not a number of 0 or more.
+        """
+        depth = nonnegative("depth", depth, "m")
+        shaper, middle = self._shaper, self.pressure_angle
+        roll = 0.5 * sum(self._rolls)
+        here = float(self._offset(middle))
+
+        def excess(q: float) -> float:
+            return float(self._offset(q)) - here - depth
+
+        ends = []
+        for edge in (max(shaper.inner_radius, shaper.flank_start), shaper.outer_radius):
+            q = self._region.edge_angle(edge, roll)
+            ends.append(q if excess(q) <= 0.0 else float(brentq(excess, middle, q, xtol=1e-15)))
+        return float(self._region.position(ends[0])), float(self._region.position(ends[1]))
+
+    # --- what errors do ---------------------------------------------------------------------------------------
+
+    @property
+    def backlash(self) -> float:
+        """Play of the teeth along the pitch circle that misalignment opens [m]; less than none if they bind.
+
+        j = 2C (inv α − inv α'), C² = ΔE² + (B + Δq sin γ)², cos α' = B cos α/C: standard teeth have none at C = B.
+        Thinning a tooth by s on the pitch circle adds s C/B. Errors of angle are left out.
+        """
+        offset, alpha = self.drive.axis_offset, self.drive.pressure_angle
+        centre = math.hypot(
+            self.misalignment.offset,
+            offset + self.misalignment.gear_axial * math.sin(self.drive.shaft_angle),
+        )
+        working = math.acos(offset * math.cos(alpha) / centre)
+        return 2.0 * centre * (_involute(alpha) - _involute(working))
+
+
+@dataclass(frozen=True)
+class PointPath(TimedPairs):
+    """Path of the unloaded contact of aligned gears: each pair at one place along the face, on the line of action.
+
+    Parameters
+    ----------
+    drive : Drive
+        Its `shaper_teeth` exceed `pinion_teeth`.
+    contact_ratio : float, optional
+        Mesh periods that a tooth pair stays in mesh, 1 or more; that of the contact itself is
+        `UnloadedContact(drive).contact_ratio`. Default Tregold's, `drive.contact_ratio`, which is nearly the same.
+
+    Raises
+    ------
+    TypeError, ValueError
+        `contact_ratio` is not valid for the drive, or contact is along lines.
+    """
+
+    def __post_init__(self) -> None:
+        UnloadedContact(self.drive)
+        super().__post_init__()
+
+    @cached_property
+    def _contact(self) -> UnloadedContact:
+        return UnloadedContact(self.drive)
+
+    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
+        first, last = self._contact.rolls
+        roll = first + (last - first) * ages / self.contact_ratio
+        x, y, _ = np.moveaxis(self.drive.contact_region.point(self._contact.pressure_angle, roll), -1, 0)
+        none = np.zeros(ages.shape)
+        return PairStates(
+            np.asarray(in_mesh),
+            np.where(in_mesh, np.hypot(x, y), none),
+            np.where(in_mesh, np.arctan2(x, -y), none),
+            none,
+        )
+
+
+def window(drive: Drive, error: str, misalignment: Misalignment = ALIGNED) -> tuple[float, float]:
+    """Range of one error of alignment in which contact stays on the flank, all others as they are.
+
+    Parameters
+    ----------
+    drive : Drive
+        Its `shaper_teeth` exceed `pinion_teeth`.
+    error : {"offset", "gear_axial", "shaft_angle"}
+        Field of `misalignment` that is varied.
+    misalignment : Misalignment
+        Contact is on the flank with it. Default: none.
+
+    Returns
+    -------
+    low, high : float
+        Of the error, in its unit: beyond them an edge bears, or nothing. To 1e-9 of the module, or of a radian.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If there is no such error, or no contact to begin with.
+    """
+    names = ("offset", "gear_axial", "shaft_angle")
+    if error not in names:
+        raise ValueError(f"error must be one of {', '.join(names)}, got {error!r}")
+    start = float(getattr(misalignment, error))
+    UnloadedContact(drive, misalignment)
+    unit, most = (1.0, 0.1) if error == "shaft_angle" else (drive.module, 10.0 * drive.module)
+
+    def holds(value: float) -> bool:
+        try:
+            UnloadedContact(drive, replace(misalignment, **{error: value}))
+        except ValueError:
+            return False
+        return True
+
+    ends = []
+    for sense in (-1.0, 1.0):
+        inside, outside = 0.0, 1e-6 * unit
+        while holds(start + sense * outside) and outside < most:
+            inside, outside = outside, 2.0 * outside
+        while outside - inside > 1e-9 * unit:
+            middle = 0.5 * (inside + outside)
+            inside, outside = (middle, outside) if holds(start + sense * middle) else (inside, middle)
+        ends.append(start + sense * inside)
+    return ends[0], ends[1]
+
+
+def _normal(q: ArrayLike) -> FloatArray:
+    """N(q), unit normals of the flank where the shaper makes it, shape of q and (3,)."""
+    return np.stack([-np.cos(q), -np.sin(q), np.zeros(np.shape(q))], axis=-1)
+
+
+def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Vector product of one vector (3,) and others (..., 3); NumPy's takes longer than all the rest."""
+    x, y, z = np.moveaxis(other, -1, 0)
+    a, b, c = one.tolist()
+    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+
+
+def _rotated(vectors: FloatArray, axis: FloatArray, angles: FloatArray) -> FloatArray:
+    """Rotate vectors (..., 3) about a unit axis by angles (...) (Rodrigues)."""
+    cosine, sine = np.cos(angles)[..., np.newaxis], np.sin(angles)[..., np.newaxis]
+    along = (vectors @ axis)[..., np.newaxis] * axis
+    return np.asarray(vectors * cosine + _cross(axis, vectors) * sine + along * (1.0 - cosine), dtype=float)
+
+
+def _involute(angle: float) -> float:
+    return math.tan(angle) - angle
+
+
+def _where_positive(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
+    """Part of an interval where a monotonic function is not negative; empty, (end, end), if it is nowhere so."""
+    if low >= high:
+        return low, high
+    first, last = function(low), function(high)
+    if first >= 0.0 and last >= 0.0:
+        return low, high
+    if first < 0.0 and last < 0.0:
+        return (low, low) if first > last else (high, high)
+    place = float(brentq(function, low, high, xtol=1e-16, rtol=8.9e-16))
+    return (place, high) if first < 0.0 else (low, place)
+
+
+def _hertz(smaller: float, larger: float, force: float, modulus: float) -> Ellipse:
+    """Ellipse for two principal curvatures of the gap [1/m], both positive.
+
+    Semi-axes follow from Carlson's integrals (Johnson, Contact Mechanics, section 4.2): a curvature is
+    F/(πE*) R_D(0, other², own²) of the semi-axes, the approach 3F/(2πE*) R_F(0, long², short²).
+    """
+
+    def excess(logarithm: float) -> float:
+        k = math.exp(logarithm)  # (short/long)²
+        return math.log(float(elliprd(0.0, 1.0, k)) / float(elliprd(0.0, k, 1.0))) - math.log(
+            larger / smaller
+        )
+
+    k = math.exp(float(brentq(excess, -80.0, 0.0, xtol=1e-14))) if larger > smaller else 1.0
+    scale = force / (math.pi * modulus)
+    long = (scale * float(elliprd(0.0, k, 1.0)) / smaller) ** (1.0 / 3.0)
+    short = long * math.sqrt(k)
+    approach = 1.5 * scale * float(elliprf(0.0, long**2, short**2))
+    return Ellipse(long, short, approach, 1.5 * force / (math.pi * long * short))
