@@ -33,17 +33,18 @@ drive: environment ## report on a drive of your own: make drive FILE=my_drive.ya
 	@test -f '$(FILE)' || { echo 'There is no file $(FILE)'; exit 2; }
 	@$(PYTHON) tools/run_drive.py '$(FILE)'
 
+# Tests are shared out by file: what those of one file share, such as a derivation, is computed once.
 test: environment ## run the tests (a minute or so)
-	@$(PYTEST) -n 2 -m 'not slow and not book'
+	@$(PYTEST) -n 2 --dist loadfile -m 'not slow and not book'
 
 test-slow: environment ## run the tests that take a minute each
 	@$(PYTEST) -n 2 --dist loadscope -m 'slow and not book'
 
 test-kernel: environment ## run the tests as on another processor
-	@$(PYTHON) tools/test_kernel.py -n 2 -m 'not slow and not book'
+	@$(PYTHON) tools/test_kernel.py -n 2 --dist loadfile -m 'not slow and not book'
 
 test-lowest: environment ## run the tests with the oldest versions that pyproject.toml allows
-	@$(PYTHON) tools/test_lowest.py -n 2 -m 'not slow and not book'
+	@$(PYTHON) tools/test_lowest.py -n 2 --dist loadfile -m 'not slow and not book'
 
 test-book: environment ## look at the built book in Chromium (make book first)
 	@$(PYTEST) -n 2 --dist loadscope -m book tests/book
