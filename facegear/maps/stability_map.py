@@ -14,7 +14,7 @@ What falls between the columns of a map, tongues narrower than their distance, i
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
@@ -357,6 +357,41 @@ def _column_radii(column: _Column, method: Method | None) -> FloatArray:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """What all columns of some values have in common; `alone` as in :class:`_ModelColumn`."""
+
+    sweep: _Sweep
+    loads: LoadSweep | None
+    alone: bool
+
+    def at(self, speed: float) -> _Column:
+        """Return the column at a speed.
+
+        Load parameters are those of all values at the first speed; at the others the first, middle and last value show
+        whether they, or anything else, depend on both speed and value.
+        """
+        if self.loads is not None:
+            probed = [model.system(speed) for model in self.sweep.probed]
+            parameters = self.sweep.load_parameters(probed)
+            expected = self.loads.column.stacked()[list(self.sweep.probes)]
+            if parameters is not None and np.array_equal(parameters.reshape(expected.shape), expected):
+                return _LoadColumn(probed[0], self.loads)
+        return _ModelColumn(self.sweep, speed, self.alone)
+
+    @property
+    def variable(self) -> FloatArray:
+        """Variable in which matrices are interpolated, (V,)."""
+        return np.array(self.sweep.values) if self.loads is None else self.loads.variable
+
+    @property
+    def ends(self) -> tuple[float, float] | None:
+        """Ends of the variable, if matrices are interpolated between them."""
+        variable = self.variable
+        smooth = not self.alone if self.loads is None else self.loads.smooth
+        return (float(variable.min()), float(variable.max())) if is_interpolated(variable, smooth) else None
+
+
 Place = tuple[slice, slice]
 
 
@@ -365,18 +400,19 @@ class _Chunk:
     """Neighbouring columns."""
 
     place: Place
-    columns: tuple[_Column, ...]
-    method: Method | None
+    columns: _Columns
+    speeds: tuple[float, ...]
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
-        yield repr(self.method)
-        for column in self.columns:
-            yield from column.content()
+        yield repr(self.columns.sweep.method)
+        for speed in self.speeds:
+            yield from self.columns.at(speed).content()
 
     def compute(self) -> FloatArray:
         """Spectral radii, shape (V, columns)."""
-        return np.stack([column.radii(self.method) for column in self.columns], axis=1)
+        method = self.columns.sweep.method
+        return np.stack([self.columns.at(speed).radii(method) for speed in self.speeds], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -400,21 +436,24 @@ class _Samples:
     """Samples of a sheet at one speed."""
 
     window: _Window
-    column: _Column
+    columns: _Columns
+    speed: float
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
         yield from self.window.content()
-        yield from self.column.content()
+        yield from self.columns.at(self.speed).content()
 
     def compute(self) -> FloatArray:
-        """See :func:`facegear.floquet.sheets.samples`; nothing where the method does not apply."""
-        window, column = self.window, self.column
-        try:
-            evaluate = column.matrices(window.method, window.scale)
-            return samples(evaluate, column.variable, column.smooth)
-        except UnsuitableSystemError:
-            return np.empty((0, *window.scale.shape))
+        """See :func:`facegear.floquet.sheets.samples`; nothing where another column would be needed, or method."""
+        column, window = self.columns.at(self.speed), self.window
+        if isinstance(column, _LoadColumn) == (self.columns.loads is not None):
+            try:
+                evaluate = column.matrices(window.method, window.scale)
+                return samples(evaluate, column.variable, column.smooth)
+            except UnsuitableSystemError:
+                pass
+        return np.empty((0, *window.scale.shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -423,7 +462,6 @@ class _SheetChunk(_Chunk):
 
     window: _Window
     sheet: Sheet
-    speeds: tuple[float, ...]
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
@@ -432,19 +470,16 @@ class _SheetChunk(_Chunk):
 
     def compute(self) -> FloatArray:
         """Spectral radii, shape (V, columns), column by column if one of them belies the sheet."""
-        variable = self.columns[0].variable
-        matrices = (self.sheet.matrices(speed, variable) for speed in self.speeds)
-        radii = np.stack([spectral_radii(column) for column in matrices], axis=1)
-        return radii if self._is_right(radii) else super().compute()
-
-    def _is_right(self, radii: FloatArray) -> bool:
-        """Whether two cells of the middle column, that of the largest radius among them, are those of the sheet."""
-        middle = len(self.columns) // 2
-        column = self.columns[middle]
-        chosen = np.unique([int(radii[:, middle].argmax()), int(0.382 * len(radii))])
+        variable = self.columns.variable
+        matrices = self.sheet.matrices(np.array(self.speeds), variable)
+        flat = matrices.reshape(-1, *matrices.shape[2:])
+        radii = spectral_radii(flat).reshape(len(self.speeds), -1).T
+        middle = len(self.speeds) // 2
+        # The largest radius of the middle column, and another.
+        chosen = np.unique([int(radii[:, middle].argmax()), int(0.382 * variable.size)])
+        column = self.columns.at(self.speeds[middle])
         own = column.matrices(self.window.method, self.window.scale)(column.variable[chosen])
-        found = self.sheet.matrices(self.speeds[middle], column.variable)[chosen]
-        return agree(found, own)
+        return radii if agree(matrices[middle, chosen], own) else super().compute()
 
 
 @dataclass(frozen=True, eq=False)
@@ -454,44 +489,49 @@ class _Laid:
     rows: slice
     start: int
     speeds: tuple[float, ...]
-    columns: tuple[_Column, ...]
+    columns: _Columns
     window: _Window
     samples: tuple[_Samples, ...]
-    method: Method | None
+
+    @classmethod
+    def between(cls, rows: slice, inside: slice, degree: int, speeds: FloatArray, columns: _Columns) -> _Laid:
+        """Prepare a sheet of some degree through the columns `inside`."""
+        part, sweep = speeds[inside], columns.sweep
+        low, high = 1.0 / float(part[-1]), 1.0 / float(part[0])
+        slowest, fastest = (Family([sweep.probed[-1].system(v)]) for v in (float(part[0]), float(part[-1])))
+
+        def tried(method: Method) -> Method:
+            method.scaled_transition_matrices(fastest)
+            return method
+
+        method = with_method(sweep.method, tried)
+        # No series resolves rounding, which is largest in the longest period.
+        rounding = rounding_error(np.eye(len(fastest.scale)), slowest, method)
+        window = _Window(low, high, degree, method, fastest.scale, max(SHEET_TOLERANCE, 4.0 * rounding))
+        points = 1.0 / ChebyshevSeries.points_of(low, high, degree)
+        found = tuple(_Samples(window, columns, speed) for speed in points.tolist())
+        return cls(rows, inside.start, tuple(part.tolist()), columns, window, found)
 
     def chunks(self, found: Sequence[FloatArray]) -> list[_Chunk]:
         """Prepare the columns, on the sheet through what was found if that is smooth."""
-        column, window = self.columns[0], self.window
-        variable = column.variable
-        ends = None
-        if is_interpolated(variable, column.smooth):
-            ends = float(variable.min()), float(variable.max())
-        sheet = Sheet.through(window.low, window.high, found, ends, window.tolerance)
+        window = self.window
+        sheet = Sheet.through(window.low, window.high, found, self.columns.ends, window.tolerance)
         if sheet is None:
-            return _in_chunks(self.rows, self.start, self.columns, self.method)
-        parts = (slice(k, k + _SHEET_CHUNK) for k in range(0, len(self.columns), _SHEET_CHUNK))
+            return _in_chunks(self.rows, self.start, self.speeds, self.columns)
         return [
-            _SheetChunk(
-                (
-                    self.rows,
-                    slice(self.start + part.start, self.start + part.start + len(self.columns[part])),
-                ),
-                self.columns[part],
-                self.method,
-                window,
-                sheet,
-                self.speeds[part],
-            )
-            for part in parts
+            _SheetChunk(chunk.place, self.columns, chunk.speeds, window, sheet)
+            for chunk in _in_chunks(self.rows, self.start, self.speeds, self.columns, _SHEET_CHUNK)
         ]
 
 
-def _in_chunks(rows: slice, start: int, columns: Sequence[_Column], method: Method | None) -> list[_Chunk]:
+def _in_chunks(
+    rows: slice, start: int, speeds: Sequence[float], columns: _Columns, size: int = _CHUNK
+) -> list[_Chunk]:
     """Group columns, the first of which has the number `start`."""
+    parts = [tuple(speeds[k : k + size]) for k in range(0, len(speeds), size)]
     return [
-        _Chunk((rows, slice(start + k, start + k + len(part))), tuple(part), method)
-        for k in range(0, len(columns), _CHUNK)
-        for part in [columns[k : k + _CHUNK]]
+        _Chunk((rows, slice(start + k * size, start + k * size + len(part))), columns, part)
+        for k, part in enumerate(parts)
     ]
 
 
@@ -506,24 +546,21 @@ def _layout(
     if loads is not None:
         swept = LoadSweep.of(first[0], LoadColumn(*loads.transpose(1, 0, 2)))
     alone = swept is None and _cell_by_cell(sweep, first)
-    parts = [(slice(None), sweep)]
+    # Fresh copies: models that have been built need not travel to other processes.
+    whole = [(slice(None), replace(sweep))]
+    parts = whole
     if alone:
         parts = [(slice(i, i + 1), replace(sweep, values=(v,))) for i, v in enumerate(sweep.values)]
     planned = [windows(_motions(part, speeds), speeds) if speeds.size > 1 else [] for _, part in parts]
     if not any(planned):
-        parts, planned = [(slice(None), sweep)], [[]]
+        parts, planned = whole, [[]]
     chunks: list[_Chunk] = []
     laid: list[_Laid] = []
     for (rows, part), found in zip(parts, planned, strict=True):
-        stop = speeds.size
-        columns = _columns(part, swept, alone)
-        for inside, degree in found:
-            sheet = _lay(part, rows, inside, speeds, degree, columns)
-            if sheet is None:
-                break
-            laid.append(sheet)
-            stop = inside.start
-        chunks += _in_chunks(rows, 0, columns(speeds[:stop]), sweep.method)
+        columns = _Columns(part, swept, alone)
+        laid += [_Laid.between(rows, inside, degree, speeds, columns) for inside, degree in found]
+        stop = found[-1][0].start if found else speeds.size
+        chunks += _in_chunks(rows, 0, speeds[:stop].tolist(), columns)
     return chunks, laid
 
 
@@ -532,68 +569,6 @@ def _motions(sweep: _Sweep, speeds: FloatArray) -> FrozenMotions:
     low, high = 1.0 / float(speeds[-1]), 1.0 / float(speeds[0])
     frozen = [FrozenMotions.of(model, low, high).exponents for model in sweep.probed]
     return FrozenMotions(low, high, np.concatenate(frozen))
-
-
-def _columns(sweep: _Sweep, swept: LoadSweep | None, alone: bool) -> Callable[[FloatArray], list[_Column]]:
-    """Columns at speeds.
-
-    Load parameters are those of all values at the first speed; at the others the first, middle and last value show
-    whether they, or anything else, depend on both speed and value.
-    """
-    if swept is not None:
-        expected = swept.column.stacked()[list(sweep.probes)]
-    # A fresh copy: models that have been built need not travel to other processes.
-    own = replace(sweep)
-
-    def columns(speeds: FloatArray) -> list[_Column]:
-        found: list[_Column] = []
-        for speed in speeds.tolist():
-            if swept is not None:
-                probed = [model.system(speed) for model in sweep.probed]
-                parameters = sweep.load_parameters(probed)
-                if parameters is not None and np.array_equal(parameters.reshape(expected.shape), expected):
-                    found.append(_LoadColumn(probed[0], swept))
-                    continue
-            found.append(_ModelColumn(own, speed, alone))
-        return found
-
-    return columns
-
-
-def _lay(
-    sweep: _Sweep,
-    rows: slice,
-    inside: slice,
-    speeds: FloatArray,
-    degree: int,
-    columns: Callable[[FloatArray], list[_Column]],
-) -> _Laid | None:
-    """Prepare a sheet through some columns, or None if they are not all of one kind."""
-    part = speeds[inside]
-    low, high = 1.0 / float(part[-1]), 1.0 / float(part[0])
-    own, sampled = columns(part), columns(1.0 / ChebyshevSeries.points_of(low, high, degree))
-    if any(type(column) is not type(own[0]) for column in own + sampled):
-        return None
-    slowest, fastest = (Family([sweep.probed[-1].system(v)]) for v in (float(part[0]), float(part[-1])))
-
-    def tried(method: Method) -> Method:
-        method.scaled_transition_matrices(fastest)
-        return method
-
-    method = with_method(sweep.method, tried)
-    # No series resolves rounding, which is largest in the longest period.
-    rounding = rounding_error(np.eye(len(fastest.scale)), slowest, method)
-    tolerance = max(SHEET_TOLERANCE, 4.0 * rounding)
-    window = _Window(low, high, degree, method, fastest.scale, tolerance)
-    return _Laid(
-        rows,
-        inside.start,
-        tuple(part.tolist()),
-        tuple(own),
-        window,
-        tuple(_Samples(window, column) for column in sampled),
-        sweep.method,
-    )
 
 
 def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray:
