@@ -21,7 +21,7 @@ SHEET_TOLERANCE = 1e-11
 # Fewer speeds than this are columns.
 _FEWEST_SPEEDS = 24
 # Speeds that a sheet must have for each of its Chebyshev points: these crowd where speeds are slow, and cost most.
-_SPEEDS_A_POINT = 2
+_SPEEDS_A_POINT = 1.5
 # Places at which a sheet is tried to end.
 _TRIALS = 16
 
@@ -45,8 +45,10 @@ def windows(motions: FrozenMotions, speeds: FloatArray) -> list[tuple[slice, int
     return found
 
 
-def samples(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArray:
+def samples(evaluate: Evaluate, variable: FloatArray, smooth: bool, degree: int) -> FloatArray:
     """Matrices along a column, at Chebyshev points of its variable, or at all its values where it is not interpolated.
+
+    The degree is the first that is tried.
 
     Returns
     -------
@@ -55,7 +57,7 @@ def samples(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArra
     """
     if not is_interpolated(variable, smooth):
         return evaluate(variable)
-    series = resolved(evaluate, variable, SHEET_TOLERANCE)
+    series = resolved(evaluate, variable, SHEET_TOLERANCE, degree)
     return evaluate(variable[:1])[:0] if series is None else series.values
 
 

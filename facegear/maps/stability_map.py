@@ -28,7 +28,7 @@ from facegear.floquet.collocation import UnsuitableSystemError
 from facegear.floquet.columns import Evaluate, LoadSweep, agree, column_of, family_matrices
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at, require_model
-from facegear.floquet.multiplier_curves import FrozenMotions
+from facegear.floquet.multiplier_curves import FrozenMotions, degree_between
 from facegear.floquet.multipliers import (
     Method,
     multipliers,
@@ -43,7 +43,7 @@ from facegear.floquet.sheets import SHEET_TOLERANCE, Sheet, is_interpolated, sam
 from facegear.floquet.stepping import Family
 from facegear.maps.parallel import Workers, computed, parts_of
 from facegear.support.parameters import finite_array, rpm
-from facegear.support.types import FloatArray
+from facegear.support.types import ComplexArray, FloatArray
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8
@@ -232,6 +232,17 @@ class _Sweep:
         """Models of these values."""
         return tuple(self.model_at(self.values[probe]) for probe in self.probes)
 
+    def keeps(self, loads: FloatArray, speed: float) -> bool:
+        """Whether the first, the middle and the last value have these load parameters at a speed, all else being equal.
+
+        Parameters
+        ----------
+        loads : array, shape (V, 3, loads)
+            From :meth:`load_parameters`.
+        """
+        found = self.load_parameters([model.system(speed) for model in self.probed])
+        return found is not None and np.array_equal(found, loads[list(self.probes)])
+
     @property
     def description(self) -> str:
         """Method in words."""
@@ -295,9 +306,9 @@ class _LoadColumn:
         """Transition matrices at values of the variable."""
         return self.loads.matrices(self.system, method, scale)
 
-    def radii(self, method: Method | None) -> FloatArray:
-        """Spectral radii, (V,)."""
-        return _column_radii(self, method)
+    def radii(self, method: Method | None, degree: int) -> FloatArray:
+        """Spectral radii, (V,), by series of which `degree` is the first that is tried."""
+        return _column_radii(self, method, degree)
 
 
 @dataclass(frozen=True, eq=False)
@@ -339,31 +350,50 @@ class _ModelColumn:
         """Transition matrices at values of the parameter."""
         return family_matrices(lambda value: self.sweep.model_at(value).system(self.speed), method, scale)
 
-    def radii(self, method: Method | None) -> FloatArray:
-        """Spectral radii, (V,)."""
+    def radii(self, method: Method | None, degree: int) -> FloatArray:
+        """Spectral radii, (V,), by series of which `degree` is the first that is tried."""
         if self.alone or _cell_by_cell(self.sweep, self.probed):
             cells = (model.system(self.speed) for model in self.sweep.models)
             return np.array([_spectral_radius(cell, method) for cell in cells])
-        return _column_radii(self, method)
+        return _column_radii(self, method, degree)
 
 
 _Column = _LoadColumn | _ModelColumn
 
 
-def _column_radii(column: _Column, method: Method | None) -> FloatArray:
+def _column_radii(column: _Column, method: Method | None, degree: int) -> FloatArray:
     scale = column.scale
     return with_method(
-        method, lambda chosen: column_of(column.matrices(chosen, scale), column.variable, column.smooth)
+        method,
+        lambda chosen: column_of(column.matrices(chosen, scale), column.variable, column.smooth, degree),
     )
 
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """What all columns of some values have in common; `alone` as in :class:`_ModelColumn`."""
+    """What all columns of some values have in common; `alone` as in :class:`_ModelColumn`.
+
+    Motions are those of the first, the middle and the last value.
+    """
 
     sweep: _Sweep
     loads: LoadSweep | None
     alone: bool
+    motions: tuple[FrozenMotions, ...]
+
+    def degree(self, speed: float) -> int:
+        """Estimate of the degree that a series along the parameter will have."""
+        first, last = self._turning
+        return degree_between(first / speed, last / speed, SHEET_TOLERANCE) if first.size == last.size else 0
+
+    @cached_property
+    def _turning(self) -> tuple[ComplexArray, ComplexArray]:
+        """Exponents over slowness of the first and of the last value, slow ones first."""
+        first, last = (
+            exponents[exponents.imag >= 0.0]
+            for exponents in (self.motions[0].exponents, self.motions[-1].exponents)
+        )
+        return first[np.argsort(first.imag)], last[np.argsort(last.imag)]
 
     def at(self, speed: float) -> _Column:
         """Return the column at a speed.
@@ -372,11 +402,10 @@ class _Columns:
         whether they, or anything else, depend on both speed and value.
         """
         if self.loads is not None:
-            probed = [model.system(speed) for model in self.sweep.probed]
-            parameters = self.sweep.load_parameters(probed)
-            expected = self.loads.column.stacked()[list(self.sweep.probes)]
-            if parameters is not None and np.array_equal(parameters.reshape(expected.shape), expected):
-                return _LoadColumn(probed[0], self.loads)
+            column = self.loads.column
+            loads = np.stack([column.mass, column.damping, column.stiffness], axis=1)
+            if self.sweep.keeps(loads, speed):
+                return _LoadColumn(self.sweep.probed[0].system(speed), self.loads)
         return _ModelColumn(self.sweep, speed, self.alone)
 
     @property
@@ -412,7 +441,10 @@ class _Chunk:
     def compute(self) -> FloatArray:
         """Spectral radii, shape (V, columns)."""
         method = self.columns.sweep.method
-        return np.stack([self.columns.at(speed).radii(method) for speed in self.speeds], axis=1)
+        return np.stack(
+            [self.columns.at(speed).radii(method, self.columns.degree(speed)) for speed in self.speeds],
+            axis=1,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -422,13 +454,15 @@ class _Window:
     low: float
     high: float
     degree: int
+    degree_along: int
     method: Method
     scale: FloatArray
     tolerance: float
 
     def content(self) -> Iterator[Any]:
         """Everything that a sheet depends on besides its columns."""
-        yield from (self.low, self.high, self.degree, repr(self.method), self.scale, self.tolerance)
+        yield from (self.low, self.high, self.degree, self.degree_along)
+        yield from (repr(self.method), self.scale, self.tolerance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -450,7 +484,7 @@ class _Samples:
         if isinstance(column, _LoadColumn) == (self.columns.loads is not None):
             try:
                 evaluate = column.matrices(window.method, window.scale)
-                return samples(evaluate, column.variable, column.smooth)
+                return samples(evaluate, column.variable, column.smooth, window.degree_along)
             except UnsuitableSystemError:
                 pass
         return np.empty((0, *window.scale.shape))
@@ -507,7 +541,10 @@ class _Laid:
         method = with_method(sweep.method, tried)
         # No series resolves rounding, which is largest in the longest period.
         rounding = rounding_error(np.eye(len(fastest.scale)), slowest, method)
-        window = _Window(low, high, degree, method, fastest.scale, max(SHEET_TOLERANCE, 4.0 * rounding))
+        tolerance = max(SHEET_TOLERANCE, 4.0 * rounding)
+        # Along the parameter one degree for all: else what series leave out would not be smooth from speed to speed.
+        along = columns.degree(float(part[0]))
+        window = _Window(low, high, degree, along, method, fastest.scale, tolerance)
         points = 1.0 / ChebyshevSeries.points_of(low, high, degree)
         found = tuple(_Samples(window, columns, speed) for speed in points.tolist())
         return cls(rows, inside.start, tuple(part.tolist()), columns, window, found)
@@ -543,7 +580,7 @@ def _layout(
     Values that are no smooth function of the parameter have sheets of their own, where these pay.
     """
     swept = None
-    if loads is not None:
+    if loads is not None and sweep.keeps(loads, float(speeds[-1])):
         swept = LoadSweep.of(first[0], LoadColumn(*loads.transpose(1, 0, 2)))
     alone = swept is None and _cell_by_cell(sweep, first)
     # Fresh copies: models that have been built need not travel to other processes.
@@ -551,24 +588,28 @@ def _layout(
     parts = whole
     if alone:
         parts = [(slice(i, i + 1), replace(sweep, values=(v,))) for i, v in enumerate(sweep.values)]
-    planned = [windows(_motions(part, speeds), speeds) if speeds.size > 1 else [] for _, part in parts]
+    moved = [_motions(part, speeds) for _, part in parts]
+    planned = [windows(_together(motions), speeds) if speeds.size > 1 else [] for motions in moved]
     if not any(planned):
         parts, planned = whole, [[]]
     chunks: list[_Chunk] = []
     laid: list[_Laid] = []
-    for (rows, part), found in zip(parts, planned, strict=True):
-        columns = _Columns(part, swept, alone)
+    for (rows, part), motions, found in zip(parts, moved, planned, strict=False):
+        columns = _Columns(part, swept, alone, motions)
         laid += [_Laid.between(rows, inside, degree, speeds, columns) for inside, degree in found]
         stop = found[-1][0].start if found else speeds.size
         chunks += _in_chunks(rows, 0, speeds[:stop].tolist(), columns)
     return chunks, laid
 
 
-def _motions(sweep: _Sweep, speeds: FloatArray) -> FrozenMotions:
+def _motions(sweep: _Sweep, speeds: FloatArray) -> tuple[FrozenMotions, ...]:
     """Motions of the first, the middle and the last value."""
     low, high = 1.0 / float(speeds[-1]), 1.0 / float(speeds[0])
-    frozen = [FrozenMotions.of(model, low, high).exponents for model in sweep.probed]
-    return FrozenMotions(low, high, np.concatenate(frozen))
+    return tuple(FrozenMotions.of(model, low, high) for model in sweep.probed)
+
+
+def _together(motions: Sequence[FrozenMotions]) -> FrozenMotions:
+    return replace(motions[0], exponents=np.concatenate([own.exponents for own in motions]))
 
 
 def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray:
