@@ -70,9 +70,13 @@ def column_spectral_radii(
     )
 
 
-def column_of(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArray:
+def column_of(
+    evaluate: Evaluate, variable: FloatArray, smooth: bool, degree: int = _LOWEST_DEGREE
+) -> FloatArray:
     """Spectral radii at values of the variable, shape (V,), interpolated if matrices are smooth in it."""
-    return interpolated_spectral_radii(evaluate, variable) if smooth else spectral_radii(evaluate(variable))
+    if smooth:
+        return interpolated_spectral_radii(evaluate, variable, degree=degree)
+    return spectral_radii(evaluate(variable))
 
 
 def family_spectral_radii(
@@ -234,7 +238,7 @@ class _StraightLine:
 
 
 def interpolated_spectral_radii(
-    evaluate: Evaluate, points: FloatArray, tolerance: float = TOLERANCE
+    evaluate: Evaluate, points: FloatArray, tolerance: float = TOLERANCE, degree: int = _LOWEST_DEGREE
 ) -> FloatArray:
     """Largest modulus of the eigenvalues of an analytic matrix function of one variable at many points.
 
@@ -248,13 +252,15 @@ def interpolated_spectral_radii(
     points : array, shape (V,)
     tolerance : float
         Size of the last coefficients relative to the largest entry or 1, at which to stop.
+    degree : int
+        The first that is tried.
 
     Returns
     -------
     array, shape (V,)
         From matrices evaluated point by point, if interpolation takes as many evaluations or is found wrong.
     """
-    series = resolved(evaluate, points, tolerance)
+    series = resolved(evaluate, points, tolerance, degree)
     if series is not None:
         matrices = series(points)
         radii = spectral_radii(matrices)
@@ -281,12 +287,12 @@ def _witnesses(series: ChebyshevSeries, points: FloatArray, radii: FloatArray) -
     return np.unique([radii.argmax(), *(np.where(half, distance, 0.0).argmax() for half in (lower, ~lower))])
 
 
-def resolved(evaluate: Evaluate, points: FloatArray, tolerance: float) -> ChebyshevSeries | None:
+def resolved(evaluate: Evaluate, points: FloatArray, tolerance: float, degree: int) -> ChebyshevSeries | None:
     """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
-    if not resolvable(points):
+    if not resolvable(points) or degree > points.size - 2:
         return None
     low, high = float(points.min()), float(points.max())
-    series = ChebyshevSeries.resolved(evaluate, low, high, _LOWEST_DEGREE, points.size - 2, tolerance)
+    series = ChebyshevSeries.resolved(evaluate, low, high, degree, points.size - 2, tolerance)
     return series if series.tail <= tolerance else None
 
 

@@ -20,7 +20,7 @@ _FEWEST = 32
 # Largest difference of the sum of all eigenvalues, or of their squares, from the trace, relative to the norm.
 _TRACE_CHECK = 1e-12
 # Squares of entries beyond these bounds leave the range of numbers.
-_SMALLEST, _LARGEST = 1e-120, 1e120
+_SMALLEST, _LARGEST = 1e-100, 1e100
 
 
 def eigenvalues(matrices: FloatArray) -> ComplexArray:

@@ -28,6 +28,8 @@ _N = np.uint64(LANES)
 _2N, _3N, _4N = 2 * _N, 3 * _N, 4 * _N
 _ONE = np.uint64(1)
 _EPS = float(np.finfo(float).eps)
+# What is so much smaller than the norm is zero beside any entry: its square would leave the range of numbers.
+_FLOOR = 1e-20
 # Sweeps without an eigenvalue before a matrix is given up, and those at which its shifts are chosen otherwise.
 _MOST_SWEEPS = 40
 _UNUSUAL = (10, 20, 30)
@@ -236,7 +238,7 @@ def _reduce(a: FloatArray, size: int, n: np.uint64) -> None:
 @_inner
 def _negligible(below: float, one: float, other: float, norm: float) -> bool:
     """Whether an entry below the diagonal is none, beside those of the diagonal next to it."""
-    return abs(below) <= _EPS * max(abs(one) + abs(other), 1e-150 * norm)
+    return abs(below) <= _EPS * max(abs(one) + abs(other), _FLOOR * norm)
 
 
 @_inner
@@ -271,18 +273,17 @@ def _reflections(
         q = new_q if first else in_q
         r = new_r if first else in_r
         r = r if row < high - 1.0 else 0.0
-        size = abs(p) + abs(q) + abs(r)
-        turn = (row >= low) & (row < high) & (size > 0.0)
-        size = size if turn else 1.0
-        p, q, r = p / size, q / size, r / size
-        length = np.copysign(np.sqrt(p * p + q * q + r * r), p)
+        square = p * p + q * q + r * r
+        turn = (row >= low) & (row < high) & (square > 0.0)
+        length = np.copysign(np.sqrt(square), p)
         length = length if turn else 1.0
         head = p + length if turn else 1.0
-        f[lane] = q / head if turn else 0.0
-        f[_N + lane] = r / head if turn else 0.0
+        inverse = 1.0 / head if turn else 0.0
+        f[lane] = q * inverse
+        f[_N + lane] = r * inverse
         f[_2N + lane] = head / length if turn else 0.0
         moved = turn & (row > low)
-        a[i] = -size * length if moved else in_p
+        a[i] = -length if moved else in_p
         a[i + _N] = 0.0 if moved else in_q
         a[i + _2N] = 0.0 if moved else in_r
 
@@ -379,7 +380,7 @@ def _francis(
             for lane in range(LANES):
                 norm[lane] = max(norm[lane], abs(a[j, i, lane]))
     high[:] = d - 1
-    high_norm[LANES:] = 1e-150 * norm
+    high_norm[LANES:] = _FLOOR * norm
     top = d - 1
     while True:
         high_norm[:LANES] = high

@@ -109,15 +109,19 @@ class FrozenMotions:
 
     def degree(self, low: float, high: float) -> int:
         """Even degree at which the Chebyshev series of all motions between two values of slowness have ended."""
-        half = (high - low) / 2.0
-        # Twice the largest angle is far beyond the last Bessel function that counts.
-        turn = float(np.abs(self.leading.imag).max()) * half
-        nodes = low + half * (1.0 + chebyshev.chebpts2(min(_LONGEST, 2 * int(turn) + 64) + 1))
-        decaying = np.minimum(self.leading.real, 0.0) + 1j * self.leading.imag
-        motions = np.exp(decaying * nodes[:, None])
-        sizes = np.abs(lobatto_coefficients(motions)).max(axis=1)
-        last = int(np.flatnonzero(sizes > _TOLERANCE / 10.0)[-1])
-        return max(_LOWEST_DEGREE, 2 * ((last + 2) // 2))
+        return degree_between(self.leading * low, self.leading * high, _TOLERANCE)
+
+
+def degree_between(first: ComplexArray, last: ComplexArray, tolerance: float) -> int:
+    """Even degree at which Chebyshev series of motions e^p have ended, p straight from `first` to `last` (m,)."""
+    # Twice the largest angle is far beyond the last Bessel function that counts.
+    turn = float(np.abs(last.imag - first.imag).max()) / 2.0
+    nodes = (1.0 + chebyshev.chebpts2(min(_LONGEST, 2 * int(turn) + 64) + 1)) / 2.0
+    exponents = first + nodes[:, None] * (last - first)
+    motions = np.exp(np.minimum(exponents.real, 0.0) + 1j * exponents.imag)
+    sizes = np.abs(lobatto_coefficients(motions)).max(axis=1)
+    ended = np.flatnonzero(sizes > tolerance / 10.0)
+    return max(_LOWEST_DEGREE, 2 * ((int(ended[-1]) + 2) // 2) if ended.size else 0)
 
 
 def _unheard(count: int) -> None:

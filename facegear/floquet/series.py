@@ -43,6 +43,14 @@ def lobatto_coefficients(values: FloatArray) -> FloatArray:
     return np.asarray(coefficients)
 
 
+def chebyshev_basis(low: float, high: float, points: ArrayLike, count: int) -> FloatArray:
+    """Values of the first polynomials on an interval at points, (..., count); beyond its ends, those there."""
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    local = np.clip((np.asarray(points, dtype=float) - middle) / half, -1.0, 1.0)
+    # NumPy makes one point of a number.
+    return np.asarray(chebyshev.chebvander(local, count - 1).reshape(*local.shape, count), dtype=float)
+
+
 def interleaved(coarse: FloatArray, between: FloatArray) -> FloatArray:
     """Values at the points of twice the degree K, from those of K, (K + 1, ...), and the (K, ...) between them."""
     finer = np.empty((coarse.shape[0] + between.shape[0], *coarse.shape[1:]))
@@ -140,9 +148,5 @@ class ChebyshevSeries:
         return np.asarray(chebyshev.chebder(self.coefficients, axis=0) / half, dtype=float)
 
     def _sum(self, coefficients: FloatArray, points: ArrayLike) -> FloatArray:
-        middle, half = (self.low + self.high) / 2.0, (self.high - self.low) / 2.0
-        local = np.clip((np.asarray(points, dtype=float) - middle) / half, -1.0, 1.0)
-        # NumPy makes one point of a number.
-        count = coefficients.shape[0]
-        basis = chebyshev.chebvander(local, count - 1).reshape(*local.shape, count)
+        basis = chebyshev_basis(self.low, self.high, points, coefficients.shape[0])
         return np.tensordot(basis, coefficients, axes=1)

@@ -13,7 +13,7 @@ import numpy as np
 
 from facegear.floquet.columns import Evaluate, resolvable, resolved
 from facegear.floquet.multiplier_curves import FrozenMotions
-from facegear.floquet.series import ChebyshevSeries
+from facegear.floquet.series import ChebyshevSeries, chebyshev_basis, lobatto_coefficients
 from facegear.support.types import FloatArray
 
 #: Size of the last Chebyshev coefficients along either axis, relative to the largest entry or 1.
@@ -21,7 +21,7 @@ SHEET_TOLERANCE = 1e-11
 # Fewer speeds than this are columns.
 _FEWEST_SPEEDS = 24
 # Speeds that a sheet must have for each of its Chebyshev points: these crowd where speeds are slow, and cost most.
-_SPEEDS_A_POINT = 2
+_SPEEDS_A_POINT = 1.5
 # Places at which a sheet is tried to end.
 _TRIALS = 16
 
@@ -45,8 +45,10 @@ def windows(motions: FrozenMotions, speeds: FloatArray) -> list[tuple[slice, int
     return found
 
 
-def samples(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArray:
+def samples(evaluate: Evaluate, variable: FloatArray, smooth: bool, degree: int) -> FloatArray:
     """Matrices along a column, at Chebyshev points of its variable, or at all its values where it is not interpolated.
+
+    The degree is the first that is tried.
 
     Returns
     -------
@@ -55,7 +57,7 @@ def samples(evaluate: Evaluate, variable: FloatArray, smooth: bool) -> FloatArra
     """
     if not is_interpolated(variable, smooth):
         return evaluate(variable)
-    series = resolved(evaluate, variable, SHEET_TOLERANCE)
+    series = resolved(evaluate, variable, SHEET_TOLERANCE, degree)
     return evaluate(variable[:1])[:0] if series is None else series.values
 
 
@@ -71,9 +73,9 @@ class Sheet:
     Attributes
     ----------
     along_speed : ChebyshevSeries
-        Along slowness, its values the :func:`samples`, (K + 1, ..., d, d).
+        Along slowness, its values Chebyshev coefficients along the variable, (K + 1, d, d), or matrices at all values.
     ends : tuple of float, optional
-        Of the variable, between which samples are interpolated.
+        Of the variable, between which matrices are interpolated.
     """
 
     along_speed: ChebyshevSeries
@@ -89,19 +91,24 @@ class Sheet:
         tolerance: float,
     ) -> Sheet | None:
         """Interpolate :func:`samples` at the Chebyshev points between two values of slowness, if that is enough."""
-        most = max(len(column) for column in columns)
         if any(column.size == 0 for column in columns):
             return None
         if ends is not None:
-            points = ChebyshevSeries.points_of(*ends, most - 1)
-            columns = [
-                column if len(column) == most else ChebyshevSeries(*ends, column)(points)
-                for column in columns
-            ]
-        series = ChebyshevSeries(low, high, np.stack(columns))
-        return cls(series, ends) if series.tail <= tolerance else None
+            most = max(len(column) for column in columns)
+            series = [lobatto_coefficients(column) for column in columns]
+            columns = [np.pad(part, ((0, most - len(part)), (0, 0), (0, 0))) for part in series]
+        along_speed = ChebyshevSeries(low, high, np.stack(columns))
+        return cls(along_speed, ends) if along_speed.tail <= tolerance else None
 
-    def matrices(self, speed: float, variable: FloatArray) -> FloatArray:
-        """Transition matrices at a speed [rad/s] and values (V,) of the variable, all of them where `ends` is None."""
-        found = self.along_speed(1.0 / speed)
-        return found if self.ends is None else ChebyshevSeries(*self.ends, found)(variable)
+    def matrices(self, speeds: FloatArray, variable: FloatArray) -> FloatArray:
+        """Transition matrices at speeds (m,) [rad/s] and values (V,) of the variable, (m, V, d, d).
+
+        The variable may be left to the samples, where `ends` is None.
+        """
+        found = self.along_speed(1.0 / speeds)
+        if self.ends is None:
+            return found
+        basis = chebyshev_basis(*self.ends, variable, found.shape[1])
+        return np.asarray(basis @ found.reshape(*found.shape[:2], -1)).reshape(
+            speeds.size, variable.size, *found.shape[2:]
+        )

@@ -1,6 +1,6 @@
 """Contact at a point: a face gear cut by a shaper with more teeth than the pinion, as long as nothing is loaded.
 
-A point of the face gear's flank is named by the local pressure angle q = φ + θ0s + θs where the shaper made it and
+A point of the face gear's flank is named by the local pressure angle q = φ + θ0s + θs where the shaper made it and by
 its roll angle θs. At constant q the point being made moves along its own normal N = −(cos q, sin q, 0), which stands
 still (:mod:`facegear.symbolic.point_contact` derives it). So whether a normal of the flank touches the pinion's base
 circle, which is all that contact with an involute asks for, does not depend on θs: for any position of two rigid gears

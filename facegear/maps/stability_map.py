@@ -14,7 +14,7 @@ What falls between the columns of a map, tongues narrower than their distance, i
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
@@ -28,7 +28,7 @@ from facegear.floquet.collocation import UnsuitableSystemError
 from facegear.floquet.columns import Evaluate, LoadSweep, agree, column_of, family_matrices
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at, require_model
-from facegear.floquet.multiplier_curves import FrozenMotions
+from facegear.floquet.multiplier_curves import FrozenMotions, degree_between
 from facegear.floquet.multipliers import (
     Method,
     multipliers,
@@ -43,7 +43,7 @@ from facegear.floquet.sheets import SHEET_TOLERANCE, Sheet, is_interpolated, sam
 from facegear.floquet.stepping import Family
 from facegear.maps.parallel import Workers, computed, parts_of
 from facegear.support.parameters import finite_array, number_of_workers, rpm
-from facegear.support.types import FloatArray
+from facegear.support.types import ComplexArray, FloatArray
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8
@@ -233,6 +233,17 @@ class _Sweep:
         """Models of these values."""
         return tuple(self.model_at(self.values[probe]) for probe in self.probes)
 
+    def keeps(self, loads: FloatArray, speed: float) -> bool:
+        """Whether the first, the middle and the last value have these load parameters at a speed, all else being equal.
+
+        Parameters
+        ----------
+        loads : array, shape (V, 3, loads)
+            From :meth:`load_parameters`.
+        """
+        found = self.load_parameters([model.system(speed) for model in self.probed])
+        return found is not None and np.array_equal(found, loads[list(self.probes)])
+
     @property
     def description(self) -> str:
         """Method in words."""
@@ -301,9 +312,9 @@ class _LoadColumn:
         """Transition matrices at values of the variable."""
         return self.loads.matrices(self.system, method, scale)
 
-    def radii(self, method: Method | None) -> FloatArray:
-        """Spectral radii, (V,)."""
-        return _column_radii(self, method)
+    def radii(self, method: Method | None, degree: int) -> FloatArray:
+        """Spectral radii, (V,), by series of which `degree` is the first that is tried."""
+        return _column_radii(self, method, degree)
 
 
 @dataclass(frozen=True, eq=False)
@@ -345,22 +356,75 @@ class _ModelColumn:
         """Transition matrices at values of the parameter."""
         return family_matrices(lambda value: self.sweep.model_at(value).system(self.speed), method, scale)
 
-    def radii(self, method: Method | None) -> FloatArray:
-        """Spectral radii, (V,)."""
+    def radii(self, method: Method | None, degree: int) -> FloatArray:
+        """Spectral radii, (V,), by series of which `degree` is the first that is tried."""
         if self.alone or _cell_by_cell(self.sweep, self.probed):
             cells = (model.system(self.speed) for model in self.sweep.models)
             return np.array([_spectral_radius(cell, method) for cell in cells])
-        return _column_radii(self, method)
+        return _column_radii(self, method, degree)
 
 
 _Column = _LoadColumn | _ModelColumn
 
 
-def _column_radii(column: _Column, method: Method | None) -> FloatArray:
+def _column_radii(column: _Column, method: Method | None, degree: int) -> FloatArray:
     scale = column.scale
     return with_method(
-        method, lambda chosen: column_of(column.matrices(chosen, scale), column.variable, column.smooth)
+        method,
+        lambda chosen: column_of(column.matrices(chosen, scale), column.variable, column.smooth, degree),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """What all columns of some values have in common; `alone` as in :class:`_ModelColumn`.
+
+    Motions are those of the first, the middle and the last value.
+    """
+
+    sweep: _Sweep
+    loads: LoadSweep | None
+    alone: bool
+    motions: tuple[FrozenMotions, ...]
+
+    def degree(self, speed: float) -> int:
+        """Estimate of the degree that a series along the parameter will have."""
+        first, last = self._turning
+        return degree_between(first / speed, last / speed, SHEET_TOLERANCE) if first.size == last.size else 0
+
+    @cached_property
+    def _turning(self) -> tuple[ComplexArray, ComplexArray]:
+        """Exponents over slowness of the first and of the last value, slow ones first."""
+        first, last = (
+            exponents[exponents.imag >= 0.0]
+            for exponents in (self.motions[0].exponents, self.motions[-1].exponents)
+        )
+        return first[np.argsort(first.imag)], last[np.argsort(last.imag)]
+
+    def at(self, speed: float) -> _Column:
+        """Return the column at a speed.
+
+        Load parameters are those of all values at the first speed; at the others the first, middle and last value show
+        whether they, or anything else, depend on both speed and value.
+        """
+        if self.loads is not None:
+            column = self.loads.column
+            loads = np.stack([column.mass, column.damping, column.stiffness], axis=1)
+            if self.sweep.keeps(loads, speed):
+                return _LoadColumn(self.sweep.probed[0].system(speed), self.loads)
+        return _ModelColumn(self.sweep, speed, self.alone)
+
+    @property
+    def variable(self) -> FloatArray:
+        """Variable in which matrices are interpolated, (V,)."""
+        return np.array(self.sweep.values) if self.loads is None else self.loads.variable
+
+    @property
+    def ends(self) -> tuple[float, float] | None:
+        """Ends of the variable, if matrices are interpolated between them."""
+        variable = self.variable
+        smooth = not self.alone if self.loads is None else self.loads.smooth
+        return (float(variable.min()), float(variable.max())) if is_interpolated(variable, smooth) else None
 
 
 Place = tuple[slice, slice]
@@ -371,18 +435,22 @@ class _Chunk:
     """Neighbouring columns."""
 
     place: Place
-    columns: tuple[_Column, ...]
-    method: Method | None
+    columns: _Columns
+    speeds: tuple[float, ...]
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
-        yield repr(self.method)
-        for column in self.columns:
-            yield from column.content()
+        yield repr(self.columns.sweep.method)
+        for speed in self.speeds:
+            yield from self.columns.at(speed).content()
 
     def compute(self) -> FloatArray:
         """Spectral radii, shape (V, columns)."""
-        return np.stack([column.radii(self.method) for column in self.columns], axis=1)
+        method = self.columns.sweep.method
+        return np.stack(
+            [self.columns.at(speed).radii(method, self.columns.degree(speed)) for speed in self.speeds],
+            axis=1,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -392,13 +460,15 @@ class _Window:
     low: float
     high: float
     degree: int
+    degree_along: int
     method: Method
     scale: FloatArray
     tolerance: float
 
     def content(self) -> Iterator[Any]:
         """Everything that a sheet depends on besides its columns."""
-        yield from (self.low, self.high, self.degree, repr(self.method), self.scale, self.tolerance)
+        yield from (self.low, self.high, self.degree, self.degree_along)
+        yield from (repr(self.method), self.scale, self.tolerance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -406,21 +476,24 @@ class _Samples:
     """Samples of a sheet at one speed."""
 
     window: _Window
-    column: _Column
+    columns: _Columns
+    speed: float
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
         yield from self.window.content()
-        yield from self.column.content()
+        yield from self.columns.at(self.speed).content()
 
     def compute(self) -> FloatArray:
-        """See :func:`facegear.floquet.sheets.samples`; nothing where the method does not apply."""
-        window, column = self.window, self.column
-        try:
-            evaluate = column.matrices(window.method, window.scale)
-            return samples(evaluate, column.variable, column.smooth)
-        except UnsuitableSystemError:
-            return np.empty((0, *window.scale.shape))
+        """See :func:`facegear.floquet.sheets.samples`; nothing where another column would be needed, or method."""
+        column, window = self.columns.at(self.speed), self.window
+        if isinstance(column, _LoadColumn) == (self.columns.loads is not None):
+            try:
+                evaluate = column.matrices(window.method, window.scale)
+                return samples(evaluate, column.variable, column.smooth, window.degree_along)
+            except UnsuitableSystemError:
+                pass
+        return np.empty((0, *window.scale.shape))
 
 
 @dataclass(frozen=True, eq=False)
@@ -429,7 +502,6 @@ class _SheetChunk(_Chunk):
 
     window: _Window
     sheet: Sheet
-    speeds: tuple[float, ...]
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
@@ -438,19 +510,16 @@ class _SheetChunk(_Chunk):
 
     def compute(self) -> FloatArray:
         """Spectral radii, shape (V, columns), column by column if one of them belies the sheet."""
-        variable = self.columns[0].variable
-        matrices = (self.sheet.matrices(speed, variable) for speed in self.speeds)
-        radii = np.stack([spectral_radii(column) for column in matrices], axis=1)
-        return radii if self._is_right(radii) else super().compute()
-
-    def _is_right(self, radii: FloatArray) -> bool:
-        """Whether two cells of the middle column, that of the largest radius among them, are those of the sheet."""
-        middle = len(self.columns) // 2
-        column = self.columns[middle]
-        chosen = np.unique([int(radii[:, middle].argmax()), int(0.382 * len(radii))])
+        variable = self.columns.variable
+        matrices = self.sheet.matrices(np.array(self.speeds), variable)
+        flat = matrices.reshape(-1, *matrices.shape[2:])
+        radii = spectral_radii(flat).reshape(len(self.speeds), -1).T
+        middle = len(self.speeds) // 2
+        # The largest radius of the middle column, and another.
+        chosen = np.unique([int(radii[:, middle].argmax()), int(0.382 * variable.size)])
+        column = self.columns.at(self.speeds[middle])
         own = column.matrices(self.window.method, self.window.scale)(column.variable[chosen])
-        found = self.sheet.matrices(self.speeds[middle], column.variable)[chosen]
-        return agree(found, own)
+        return radii if agree(matrices[middle, chosen], own) else super().compute()
 
 
 @dataclass(frozen=True, eq=False)
@@ -460,44 +529,52 @@ class _Laid:
     rows: slice
     start: int
     speeds: tuple[float, ...]
-    columns: tuple[_Column, ...]
+    columns: _Columns
     window: _Window
     samples: tuple[_Samples, ...]
-    method: Method | None
+
+    @classmethod
+    def between(cls, rows: slice, inside: slice, degree: int, speeds: FloatArray, columns: _Columns) -> _Laid:
+        """Prepare a sheet of some degree through the columns `inside`."""
+        part, sweep = speeds[inside], columns.sweep
+        low, high = 1.0 / float(part[-1]), 1.0 / float(part[0])
+        slowest, fastest = (Family([sweep.probed[-1].system(v)]) for v in (float(part[0]), float(part[-1])))
+
+        def tried(method: Method) -> Method:
+            method.scaled_transition_matrices(fastest)
+            return method
+
+        method = with_method(sweep.method, tried)
+        # No series resolves rounding, which is largest in the longest period.
+        rounding = rounding_error(np.eye(len(fastest.scale)), slowest, method)
+        tolerance = max(SHEET_TOLERANCE, 4.0 * rounding)
+        # Along the parameter one degree for all: else what series leave out would not be smooth from speed to speed.
+        along = columns.degree(float(part[0]))
+        window = _Window(low, high, degree, along, method, fastest.scale, tolerance)
+        points = 1.0 / ChebyshevSeries.points_of(low, high, degree)
+        found = tuple(_Samples(window, columns, speed) for speed in points.tolist())
+        return cls(rows, inside.start, tuple(part.tolist()), columns, window, found)
 
     def chunks(self, found: Sequence[FloatArray]) -> list[_Chunk]:
         """Prepare the columns, on the sheet through what was found if that is smooth."""
-        column, window = self.columns[0], self.window
-        variable = column.variable
-        ends = None
-        if is_interpolated(variable, column.smooth):
-            ends = float(variable.min()), float(variable.max())
-        sheet = Sheet.through(window.low, window.high, found, ends, window.tolerance)
+        window = self.window
+        sheet = Sheet.through(window.low, window.high, found, self.columns.ends, window.tolerance)
         if sheet is None:
-            return _in_chunks(self.rows, self.start, self.columns, self.method)
-        parts = (slice(k, k + _SHEET_CHUNK) for k in range(0, len(self.columns), _SHEET_CHUNK))
+            return _in_chunks(self.rows, self.start, self.speeds, self.columns)
         return [
-            _SheetChunk(
-                (
-                    self.rows,
-                    slice(self.start + part.start, self.start + part.start + len(self.columns[part])),
-                ),
-                self.columns[part],
-                self.method,
-                window,
-                sheet,
-                self.speeds[part],
-            )
-            for part in parts
+            _SheetChunk(chunk.place, self.columns, chunk.speeds, window, sheet)
+            for chunk in _in_chunks(self.rows, self.start, self.speeds, self.columns, _SHEET_CHUNK)
         ]
 
 
-def _in_chunks(rows: slice, start: int, columns: Sequence[_Column], method: Method | None) -> list[_Chunk]:
+def _in_chunks(
+    rows: slice, start: int, speeds: Sequence[float], columns: _Columns, size: int = _CHUNK
+) -> list[_Chunk]:
     """Group columns, the first of which has the number `start`."""
+    parts = [tuple(speeds[k : k + size]) for k in range(0, len(speeds), size)]
     return [
-        _Chunk((rows, slice(start + k, start + k + len(part))), tuple(part), method)
-        for k in range(0, len(columns), _CHUNK)
-        for part in [columns[k : k + _CHUNK]]
+        _Chunk((rows, slice(start + k * size, start + k * size + len(part))), columns, part)
+        for k, part in enumerate(parts)
     ]
 
 
@@ -509,97 +586,36 @@ def _layout(
     Values that are no smooth function of the parameter have sheets of their own, where these pay.
     """
     swept = None
-    if loads is not None:
+    if loads is not None and sweep.keeps(loads, float(speeds[-1])):
         swept = LoadSweep.of(first[0], LoadColumn(*loads.transpose(1, 0, 2)))
     alone = swept is None and _cell_by_cell(sweep, first)
-    parts = [(slice(None), sweep)]
+    # Fresh copies: models that have been built need not travel to other processes.
+    whole = [(slice(None), replace(sweep))]
+    parts = whole
     if alone:
         parts = [(slice(i, i + 1), replace(sweep, values=(v,))) for i, v in enumerate(sweep.values)]
-    planned = [windows(_motions(part, speeds), speeds) if speeds.size > 1 else [] for _, part in parts]
+    moved = [_motions(part, speeds) for _, part in parts]
+    planned = [windows(_together(motions), speeds) if speeds.size > 1 else [] for motions in moved]
     if not any(planned):
-        parts, planned = [(slice(None), sweep)], [[]]
+        parts, planned = whole, [[]]
     chunks: list[_Chunk] = []
     laid: list[_Laid] = []
-    for (rows, part), found in zip(parts, planned, strict=True):
-        stop = speeds.size
-        columns = _columns(part, swept, alone)
-        for inside, degree in found:
-            sheet = _lay(part, rows, inside, speeds, degree, columns)
-            if sheet is None:
-                break
-            laid.append(sheet)
-            stop = inside.start
-        chunks += _in_chunks(rows, 0, columns(speeds[:stop]), sweep.method)
+    for (rows, part), motions, found in zip(parts, moved, planned, strict=False):
+        columns = _Columns(part, swept, alone, motions)
+        laid += [_Laid.between(rows, inside, degree, speeds, columns) for inside, degree in found]
+        stop = found[-1][0].start if found else speeds.size
+        chunks += _in_chunks(rows, 0, speeds[:stop].tolist(), columns)
     return chunks, laid
 
 
-def _motions(sweep: _Sweep, speeds: FloatArray) -> FrozenMotions:
+def _motions(sweep: _Sweep, speeds: FloatArray) -> tuple[FrozenMotions, ...]:
     """Motions of the first, the middle and the last value."""
     low, high = 1.0 / float(speeds[-1]), 1.0 / float(speeds[0])
-    frozen = [FrozenMotions.of(model, low, high).exponents for model in sweep.probed]
-    return FrozenMotions(low, high, np.concatenate(frozen))
+    return tuple(FrozenMotions.of(model, low, high) for model in sweep.probed)
 
 
-def _columns(sweep: _Sweep, swept: LoadSweep | None, alone: bool) -> Callable[[FloatArray], list[_Column]]:
-    """Columns at speeds.
-
-    Load parameters are those of all values at the first speed; at the others the first, middle and last value show
-    whether they, or anything else, depend on both speed and value.
-    """
-    if swept is not None:
-        expected = swept.column.stacked()[list(sweep.probes)]
-    # A fresh copy: models that have been built need not travel to other processes.
-    own = replace(sweep)
-
-    def columns(speeds: FloatArray) -> list[_Column]:
-        found: list[_Column] = []
-        for speed in speeds.tolist():
-            if swept is not None:
-                probed = [model.system(speed) for model in sweep.probed]
-                parameters = sweep.load_parameters(probed)
-                if parameters is not None and np.array_equal(parameters.reshape(expected.shape), expected):
-                    found.append(_LoadColumn(probed[0], swept))
-                    continue
-            found.append(_ModelColumn(own, speed, alone))
-        return found
-
-    return columns
-
-
-def _lay(
-    sweep: _Sweep,
-    rows: slice,
-    inside: slice,
-    speeds: FloatArray,
-    degree: int,
-    columns: Callable[[FloatArray], list[_Column]],
-) -> _Laid | None:
-    """Prepare a sheet through some columns, or None if they are not all of one kind."""
-    part = speeds[inside]
-    low, high = 1.0 / float(part[-1]), 1.0 / float(part[0])
-    own, sampled = columns(part), columns(1.0 / ChebyshevSeries.points_of(low, high, degree))
-    if any(type(column) is not type(own[0]) for column in own + sampled):
-        return None
-    slowest, fastest = (Family([sweep.probed[-1].system(v)]) for v in (float(part[0]), float(part[-1])))
-
-    def tried(method: Method) -> Method:
-        method.scaled_transition_matrices(fastest)
-        return method
-
-    method = with_method(sweep.method, tried)
-    # No series resolves rounding, which is largest in the longest period.
-    rounding = rounding_error(np.eye(len(fastest.scale)), slowest, method)
-    tolerance = max(SHEET_TOLERANCE, 4.0 * rounding)
-    window = _Window(low, high, degree, method, fastest.scale, tolerance)
-    return _Laid(
-        rows,
-        inside.start,
-        tuple(part.tolist()),
-        tuple(own),
-        window,
-        tuple(_Samples(window, column) for column in sampled),
-        sweep.method,
-    )
+def _together(motions: Sequence[FrozenMotions]) -> FrozenMotions:
+    return replace(motions[0], exponents=np.concatenate([own.exponents for own in motions]))
 
 
 def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray:
