@@ -9,6 +9,7 @@ sensitivities, reports and explorers; none of them asks for its class.
 from __future__ import annotations
 
 import dataclasses
+import difflib
 from dataclasses import dataclass
 from functools import cache
 from numbers import Real
@@ -236,8 +237,12 @@ def parameter_path(model: object, name: str) -> tuple[str, ...]:
     nearest = min((other.count(".") for other in matches), default=0)
     matches = [other for other in matches if other.count(".") == nearest]
     if not matches:
+        last = {other.rpartition(".")[2]: other for other in reversed(names)}
+        near = difflib.get_close_matches(str(name).rpartition(".")[2], last, n=3)
+        shown = sorted(last[word] for word in near) if near else names
         raise ValueError(
-            f"parameter must be one of {', '.join(names)} (the last part is enough), got {name!r}"
+            f"parameter must be one of {', '.join(shown)}{' or others' if near else ''} (the last part is enough), "
+            f"got {name!r}"
         )
     if len(matches) > 1:
         raise ValueError(f"parameter {name!r} could be {' or '.join(matches)}: give the dotted name")

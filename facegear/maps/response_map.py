@@ -18,7 +18,7 @@ from facegear.floquet.response import SteadyResponse, steady_response
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
 from facegear.maps.stability_map import checked_speeds
-from facegear.support.parameters import finite_array, rpm
+from facegear.support.parameters import finite_array, number_of_workers, rpm
 from facegear.support.types import FloatArray
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ def frequency_response(
     ['1/1']
     """
     require_model(model)
+    jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
     _require_excitation(model.system(float(speeds[0])))
     found = _computed([model], speeds, method, jobs, progress, cache_directory)[0]
@@ -120,6 +121,7 @@ def response_map(
         Naming the argument.
     """
     require_model(model)
+    jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
     given = finite_array("values", values)
     if given.ndim != 1 or given.size == 0:
