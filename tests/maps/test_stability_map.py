@@ -390,7 +390,7 @@ def test_two_workers_stopped_by_ctrl_c_lose_only_what_they_were_at(tmp_path):
         process.send_signal(signal.SIGINT)
         assert process.wait(60) != 0
     before = {path: path.stat().st_mtime_ns for path in kept.glob("*.npz")}
-    assert 3 <= len(before)
+    assert len(before) >= 3
     assert not result.exists()
     subprocess.run(command, check=True, stderr=subprocess.DEVNULL)
     after = {path: path.stat().st_mtime_ns for path in kept.glob("*.npz")}
