@@ -28,8 +28,8 @@ Evaluate = Callable[[FloatArray], FloatArray]
 
 #: Size of the last Chebyshev coefficients of the interpolated matrices, relative to the largest entry or 1.
 TOLERANCE = 1e-10
-# Degree of the first Chebyshev series that is tried.
-_LOWEST_DEGREE = 8
+#: Degree of the first Chebyshev series that is tried, where nothing tells better.
+LOWEST_DEGREE = 8
 # Largest difference of an interpolated entry from that of the cell itself, in units of the tolerance of the series.
 _WITNESSED = 10.0
 
@@ -71,7 +71,7 @@ def column_spectral_radii(
 
 
 def column_of(
-    evaluate: Evaluate, variable: FloatArray, smooth: bool, degree: int = _LOWEST_DEGREE
+    evaluate: Evaluate, variable: FloatArray, smooth: bool, degree: int = LOWEST_DEGREE
 ) -> FloatArray:
     """Spectral radii at values of the variable, shape (V,), interpolated if matrices are smooth in it."""
     if smooth:
@@ -238,7 +238,7 @@ class _StraightLine:
 
 
 def interpolated_spectral_radii(
-    evaluate: Evaluate, points: FloatArray, tolerance: float = TOLERANCE, degree: int = _LOWEST_DEGREE
+    evaluate: Evaluate, points: FloatArray, tolerance: float = TOLERANCE, degree: int = LOWEST_DEGREE
 ) -> FloatArray:
     """Largest modulus of the eigenvalues of an analytic matrix function of one variable at many points.
 
@@ -298,4 +298,4 @@ def resolved(evaluate: Evaluate, points: FloatArray, tolerance: float, degree: i
 
 def resolvable(points: FloatArray) -> bool:
     """Whether a series is tried at all: there are more points than the shortest has."""
-    return points.size > _LOWEST_DEGREE + 1 and float(np.ptp(points)) > 0.0
+    return points.size > LOWEST_DEGREE + 1 and float(np.ptp(points)) > 0.0

@@ -25,7 +25,14 @@ import xarray
 from numpy.typing import ArrayLike
 
 from facegear.floquet.collocation import UnsuitableSystemError
-from facegear.floquet.columns import Evaluate, LoadSweep, agree, column_of, family_matrices
+from facegear.floquet.columns import (
+    LOWEST_DEGREE,
+    Evaluate,
+    LoadSweep,
+    agree,
+    column_of,
+    family_matrices,
+)
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at, require_model
 from facegear.floquet.multiplier_curves import FrozenMotions, degree_between
@@ -390,7 +397,10 @@ class _Columns:
     def degree(self, speed: float) -> int:
         """Estimate of the degree that a series along the parameter will have."""
         first, last = self._turning
-        return degree_between(first / speed, last / speed, SHEET_TOLERANCE) if first.size == last.size else 0
+        # Motions that stop oscillating along the parameter have no partner at its other end.
+        if first.size != last.size:
+            return LOWEST_DEGREE
+        return degree_between(first / speed, last / speed, SHEET_TOLERANCE)
 
     @cached_property
     def _turning(self) -> tuple[ComplexArray, ComplexArray]:

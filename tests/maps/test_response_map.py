@@ -109,7 +109,11 @@ def test_maps_are_made_of_responses(gearbox, tmp_path):
         (lambda: frequency_response(3.0, SPEEDS), TypeError, "model"),
         (lambda: frequency_response(MODEL, [2.0, 1.0]), ValueError, "speeds must ascend"),
         (lambda: response_map(MODEL, SPEEDS, "part", []), ValueError, "values must list"),
-        (lambda: response_map(MODEL, SPEEDS, "pard", [1.0]), ValueError, r"must be one of model\.part or others"),
+        (
+            lambda: response_map(MODEL, SPEEDS, "pard", [1.0]),
+            ValueError,
+            r"must be one of model\.part or others",
+        ),
         (lambda: frequency_response(MODEL, SPEEDS, jobs=0), ValueError, "jobs"),
         (lambda: Excited(3.0), TypeError, "model"),
         (lambda: Excited(Mathieu(0.1), force=1.0), TypeError, "force must be a PiecewiseChebyshev"),

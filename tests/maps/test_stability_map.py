@@ -566,3 +566,27 @@ def test_a_number_of_workers_that_is_none_is_refused_first(jobs, error, says):
         borders(TRANSVERSE, "stiffness", [0.5], (50.0, 60.0), jobs=jobs)
     with pytest.raises(error, match=f"jobs must be .*-1 for all processors, {says}"):
         parallel.in_processes(abs, [(1,)], jobs)
+
+
+@dataclass(frozen=True)
+class Overdamping:
+    """Two oscillators, one of which stops oscillating as its damping is swept."""
+
+    damping: float = 0.1
+
+    def system(self, speed):
+        shape = PiecewiseChebyshev.fit(
+            lambda x, _: np.stack([np.cos(x), 1.0 + x * (1.0 - x)], axis=1), [0.0, 0.4]
+        )
+        load = ContactLoad(shape, 0.4, 0.05)
+        return PeriodicSystem(
+            np.eye(2), np.diag([self.damping, 0.02]), np.diag([1.0, 5.0]), (load,), 6.0 / speed
+        )
+
+
+def test_a_motion_may_stop_oscillating_along_the_parameter():
+    speeds, values = np.linspace(0.7, 1.5, 30), np.linspace(0.1, 5.0, 14)
+    chart = stability_map(Overdamping(), speeds, "damping", values, jobs=1)
+    for i, j in ((0, 0), (5, 20), (9, 7), (13, 29)):
+        cell = growth_rate(Overdamping(float(values[i])).system(float(speeds[j])))
+        assert float(chart[i, j]) == pytest.approx(cell, abs=1e-9)
