@@ -33,6 +33,8 @@ T = TypeVar("T")
 
 # Changes of a transition matrix that show what rounding does to its eigenvalues.
 _CHANGES = 4
+# Parts of the period, at least, in each of which something is lost to rounding.
+_STRETCHES = 16
 
 
 class Method(Protocol):
@@ -435,7 +437,7 @@ def rounding_shift(system: PeriodicSystem, method: Method) -> float:
     family = Family([system])
     scaled = method.scaled_transition_matrices(family)[0]
     rounding = rounding_error(scaled, family, method)
-    radii = np.abs(_eigenvalues(disturbed(scaled, rounding))).max(axis=-1)
+    radii = np.abs(_eigenvalues(disturbed(scaled, family, method))).max(axis=-1)
     return float(max(rounding, np.abs(radii - np.abs(_eigenvalues(scaled)).max()).max()))
 
 
@@ -457,7 +459,9 @@ class _Judged:
             better = better.refined()
             finer.append(_eigenvalues(better.scaled_transition_matrices(family))[0])
         rounding = rounding_error(scaled, family, method)
-        return cls(_eigenvalues(scaled), finer, list(_eigenvalues(disturbed(scaled, rounding))), rounding)
+        return cls(
+            _eigenvalues(scaled), finer, list(_eigenvalues(disturbed(scaled, family, method))), rounding
+        )
 
 
 def rounding_error(scaled: FloatArray, family: Family, method: Method) -> float:
@@ -466,11 +470,39 @@ def rounding_error(scaled: FloatArray, family: Family, method: Method) -> float:
     return float(places * np.finfo(float).eps * max(1.0, np.linalg.norm(scaled, 2)))
 
 
-def disturbed(matrix: FloatArray, size: float) -> FloatArray:
-    """Return a matrix (d, d) with changes of a given norm, always the same ones, shape (4, d, d)."""
-    changes = np.random.default_rng(0).normal(size=(_CHANGES, *matrix.shape))
-    norms = np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True)
-    return np.asarray(matrix + size * changes / norms, dtype=float)
+def disturbed(scaled: FloatArray, family: Family, method: Method) -> FloatArray:
+    """Return a scaled transition matrix (d, d) of a system with changes as large as rounding, shape (4, d, d).
+
+    What is lost on the way is as large as the motion is there, whatever its direction, since a method may follow it in
+    other coordinates than these; and it grows as the motion does from there on. So at the end of each of some stretches
+    of the period something is changed, and brought to the end of all. Where motions grow and die within a period, or a
+    jump of the state is taken back by another, that is more than Φ itself shows. The changes are always the same ones.
+    """
+    size = scaled.shape[-1]
+    rng = np.random.default_rng(0)
+    changed = scaled + rounding_error(scaled, family, method) * _changes(rng, size)
+    stretches = family.stretches(_STRETCHES)[0]
+    places = size + method.rounding(family) / len(stretches)
+    arriving, lost = np.eye(size), np.zeros_like(changed)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for stretch in stretches:
+            terms = _norm(stretch) * _norm(arriving)
+            lost = stretch @ lost + terms * _changes(rng, size)
+            arriving = stretch @ arriving
+        lost *= places * np.finfo(float).eps
+    # Frozen motions may grow beyond double precision where those of the system do not.
+    return np.asarray(changed + lost if np.isfinite(lost).all() else changed, dtype=float)
+
+
+def _norm(matrix: FloatArray) -> float:
+    """Largest singular value, or NaN where something has grown beyond double precision."""
+    return float(np.linalg.norm(matrix, 2)) if np.isfinite(matrix).all() else float("nan")
+
+
+def _changes(rng: np.random.Generator, size: int) -> FloatArray:
+    """Random matrices of unit norm, shape (4, size, size)."""
+    changes = rng.normal(size=(_CHANGES, size, size))
+    return np.asarray(changes / np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True), dtype=float)
 
 
 def _eigenvalues(matrices: FloatArray) -> ComplexArray:

@@ -54,8 +54,10 @@ def exponentials(matrices: FloatArray) -> FloatArray:
     with.
     """
     norm = float(np.abs(matrices).sum(axis=-2).max())
-    # Below 0.5 the first term left out, norm¹³/13!, is 2e-14.
-    squarings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.5))))
+    # Squarings multiply the first term left out, norm¹³/13!: below 0.3 it adds up to less than half a unit of the last
+    # place for each unit of the whole exponent, which is what rounding adds. No refinement would tell it where A is
+    # constant and sub-intervals are long.
+    squarings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.3))))
     first = matrices / 2.0**squarings
     second = first @ first
     third = second @ first
@@ -218,6 +220,18 @@ class Family:
                 self._put_in_jumps(steps, start[part])
                 total = chain(steps) @ total
         return np.asarray(total)
+
+    def stretches(self, fewest: int) -> FloatArray:
+        """Roughly what each part of the period does to the scaled state, jumps at its start put in, (V, P, 2n, 2n).
+
+        By the midpoint rule, P at least `fewest`: enough to tell how large motions grow on the way.
+        """
+        edges = aligned_edges(self.breakpoints, fewest)
+        start, length = edges[:-1], np.diff(edges)
+        with np.errstate(over="ignore", invalid="ignore"):
+            steps = exponentials(midpoint(start, length, self.state_matrices))
+            self._put_in_jumps(steps, start)
+        return steps
 
     def _put_in_jumps(self, steps: FloatArray, start: FloatArray) -> None:
         """Precede the sub-interval that starts at the instant of a jump by the jump of the state."""
