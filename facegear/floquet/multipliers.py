@@ -86,8 +86,8 @@ class Stepwise:
         return AlignedStepwise(2 * self.sub_intervals)
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
 
 
 @dataclass(frozen=True)
@@ -114,8 +114,8 @@ class AlignedStepwise:
         return AlignedStepwise(2 * self.sub_intervals)
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
 
 
 @dataclass(frozen=True)
@@ -145,8 +145,8 @@ class Magnus:
         return Magnus(2 * self.sub_intervals)
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ class AdaptiveMagnus:
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
-        start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
+        start = self._fewest(family)
         factor = 1
         row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
         while True:
@@ -195,12 +195,33 @@ class AdaptiveMagnus:
             row = finer
 
     def refined(self) -> Method:
-        """Return the method with a hundredth of the tolerance."""
-        return AdaptiveMagnus(max(self.tolerance / 100.0, 1e-13))
+        """Return the method with a hundredth of the tolerance, and more sub-intervals to begin with.
+
+        Where two results agree better than they have to, the tolerance alone would give the same one again.
+        """
+        return _HalvedMagnus(max(self.tolerance / 100.0, 1e-13), 1)
+
+    def _fewest(self, family: Family) -> int:
+        """Sub-intervals to begin with."""
+        return max(4, int(np.ceil(family.fastest_angle / 3.0)))
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
+
+
+@dataclass(frozen=True)
+class _HalvedMagnus(AdaptiveMagnus):
+    """Adaptive Magnus integrator whose sub-intervals are halved so many times to begin with."""
+
+    halvings: int = 1
+
+    def refined(self) -> Method:
+        """See :meth:`AdaptiveMagnus.refined`."""
+        return _HalvedMagnus(max(self.tolerance / 100.0, 1e-13), self.halvings + 1)
+
+    def _fewest(self, family: Family) -> int:
+        return int(super()._fewest(family) * 2**self.halvings)
 
 
 @dataclass(frozen=True)
@@ -377,7 +398,11 @@ def error_estimate(system: PeriodicSystem, method: Method | None = None) -> floa
     vanish because both lie on the unit circle. Near a tongue's border, where two multipliers meet, it grows as the
     true error does. The largest of two successive refinements counts: on a coarse mesh the error of a real
     multiplier may change its sign between two of them. Rounding, which may be common to all of them, is told by what
-    changes of Φ as large as its own do to the multiplier.
+    changes of Φ as large as its own do to the multiplier: those of the whole, and those of stretches of the period,
+    where a motion may be far larger than at the end.
+
+    Of two thousand systems of sixteen kinds, stiff, drifting, defective and jumping ones among them, the true error of
+    none is more than ten times this, with any method (``tests/floquet/test_estimates_of_many_kinds.py``).
 
     Parameters
     ----------
