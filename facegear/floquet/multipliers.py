@@ -173,8 +173,8 @@ class AdaptiveMagnus:
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
-        start = self._fewest(family)
-        factor = 1
+        start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
+        factor, further, settled = 1, self._further, False
         row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
         while True:
             factor *= 2
@@ -185,9 +185,12 @@ class AdaptiveMagnus:
                 finer.append(finer[-1] + (finer[-1] - coarse) / (2.0**order - 1.0))
             size = np.maximum(np.abs(finer[-1]).max(axis=(1, 2)), 1.0)
             change = np.abs(finer[-1] - finer[-2]).max(axis=(1, 2))
-            if (change <= self.tolerance * size).all():
+            settled = settled or bool((change <= self.tolerance * size).all())
+            if settled and further == 0:
                 return finer[-1]
-            if edges.size > 2**17 or not np.isfinite(size).all():
+            if settled:
+                further -= 1
+            elif edges.size > 2**17 or not np.isfinite(size).all():
                 raise ArithmeticError(
                     f"transition matrix did not reach tolerance {self.tolerance:.1g} with {edges.size - 1} "
                     "sub-intervals; the period is too long for the fastest motion or growth"
@@ -195,15 +198,16 @@ class AdaptiveMagnus:
             row = finer
 
     def refined(self) -> Method:
-        """Return the method with a hundredth of the tolerance, and more sub-intervals to begin with.
+        """Return the method with sub-intervals halved once more after it has settled.
 
-        Where two results agree better than they have to, the tolerance alone would give the same one again.
+        A smaller tolerance may be met by the same sub-intervals, and rounding may keep it from being met.
         """
-        return _HalvedMagnus(max(self.tolerance / 100.0, 1e-13), 1)
+        return _HalvedMagnus(self.tolerance, self._further + 1)
 
-    def _fewest(self, family: Family) -> int:
-        """Sub-intervals to begin with."""
-        return max(4, int(np.ceil(family.fastest_angle / 3.0)))
+    @property
+    def _further(self) -> int:
+        """How often sub-intervals are halved after two results agree."""
+        return 0
 
     def rounding(self, family: Family) -> float:
         """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
@@ -212,16 +216,13 @@ class AdaptiveMagnus:
 
 @dataclass(frozen=True)
 class _HalvedMagnus(AdaptiveMagnus):
-    """Adaptive Magnus integrator whose sub-intervals are halved so many times to begin with."""
+    """Adaptive Magnus integrator whose sub-intervals are halved so many times more than its tolerance asks for."""
 
     halvings: int = 1
 
-    def refined(self) -> Method:
-        """See :meth:`AdaptiveMagnus.refined`."""
-        return _HalvedMagnus(max(self.tolerance / 100.0, 1e-13), self.halvings + 1)
-
-    def _fewest(self, family: Family) -> int:
-        return int(super()._fewest(family) * 2**self.halvings)
+    @property
+    def _further(self) -> int:
+        return self.halvings
 
 
 @dataclass(frozen=True)
