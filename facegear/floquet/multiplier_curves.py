@@ -314,8 +314,9 @@ def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, meth
     matrix = curve.transition_matrices(np.array([speed]))[0]
     coarse = np.linalg.eigvals(matrix)
     fine = np.linalg.eigvals(transition_matrices([system], method.refined()))
-    rounding = rounding_error(matrix, Family([system]), method)
-    moved = np.linalg.eigvals(disturbed(matrix, rounding))
+    family = Family([system])
+    rounding = rounding_error(matrix, family, method)
+    moved = np.linalg.eigvals(disturbed(matrix, family, method))
     distance, shift = (
         np.abs(coarse[:, None] - others[:, None, :]).min(axis=2).max(axis=0) for others in (fine, moved)
     )

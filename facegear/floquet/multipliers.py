@@ -33,6 +33,8 @@ T = TypeVar("T")
 
 # Changes of a transition matrix that show what rounding does to its eigenvalues.
 _CHANGES = 4
+# Parts of the period, at least, in each of which something is lost to rounding.
+_STRETCHES = 16
 
 
 class Method(Protocol):
@@ -84,8 +86,8 @@ class Stepwise:
         return AlignedStepwise(2 * self.sub_intervals)
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
 
 
 @dataclass(frozen=True)
@@ -112,8 +114,8 @@ class AlignedStepwise:
         return AlignedStepwise(2 * self.sub_intervals)
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
 
 
 @dataclass(frozen=True)
@@ -143,8 +145,8 @@ class Magnus:
         return Magnus(2 * self.sub_intervals)
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
 
 
 @dataclass(frozen=True)
@@ -172,7 +174,7 @@ class AdaptiveMagnus:
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
         start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
-        factor = 1
+        factor, further, settled = 1, self._further, False
         row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
         while True:
             factor *= 2
@@ -183,9 +185,12 @@ class AdaptiveMagnus:
                 finer.append(finer[-1] + (finer[-1] - coarse) / (2.0**order - 1.0))
             size = np.maximum(np.abs(finer[-1]).max(axis=(1, 2)), 1.0)
             change = np.abs(finer[-1] - finer[-2]).max(axis=(1, 2))
-            if (change <= self.tolerance * size).all():
+            settled = settled or bool((change <= self.tolerance * size).all())
+            if settled and further == 0:
                 return finer[-1]
-            if edges.size > 2**17 or not np.isfinite(size).all():
+            if settled:
+                further -= 1
+            elif edges.size > 2**17 or not np.isfinite(size).all():
                 raise ArithmeticError(
                     f"transition matrix did not reach tolerance {self.tolerance:.1g} with {edges.size - 1} "
                     "sub-intervals; the period is too long for the fastest motion or growth"
@@ -193,12 +198,31 @@ class AdaptiveMagnus:
             row = finer
 
     def refined(self) -> Method:
-        """Return the method with a hundredth of the tolerance."""
-        return AdaptiveMagnus(max(self.tolerance / 100.0, 1e-13))
+        """Return the method with sub-intervals halved once more after it has settled.
+
+        A smaller tolerance may be met by the same sub-intervals, and rounding may keep it from being met.
+        """
+        return _HalvedMagnus(self.tolerance, self._further + 1)
+
+    @property
+    def _further(self) -> int:
+        """How often sub-intervals are halved after two results agree."""
+        return 0
 
     def rounding(self, family: Family) -> float:
-        """See :class:`Method`: exponentials are squared until their exponents are summed up."""
-        return family.exponent_norm
+        """See :class:`Method`: squaring an exponential doubles what rounding has made of it."""
+        return family.factors
+
+
+@dataclass(frozen=True)
+class _HalvedMagnus(AdaptiveMagnus):
+    """Adaptive Magnus integrator whose sub-intervals are halved so many times more than its tolerance asks for."""
+
+    halvings: int = 1
+
+    @property
+    def _further(self) -> int:
+        return self.halvings
 
 
 @dataclass(frozen=True)
@@ -375,7 +399,11 @@ def error_estimate(system: PeriodicSystem, method: Method | None = None) -> floa
     vanish because both lie on the unit circle. Near a tongue's border, where two multipliers meet, it grows as the
     true error does. The largest of two successive refinements counts: on a coarse mesh the error of a real
     multiplier may change its sign between two of them. Rounding, which may be common to all of them, is told by what
-    changes of Φ as large as its own do to the multiplier.
+    changes of Φ as large as its own do to the multiplier: those of the whole, and those of stretches of the period,
+    where a motion may be far larger than at the end.
+
+    Of two thousand systems of sixteen kinds, stiff, drifting, defective and jumping ones among them, the true error of
+    none is more than ten times this, with any method (``tests/floquet/test_estimates_of_many_kinds.py``).
 
     Parameters
     ----------
@@ -435,7 +463,7 @@ def rounding_shift(system: PeriodicSystem, method: Method) -> float:
     family = Family([system])
     scaled = method.scaled_transition_matrices(family)[0]
     rounding = rounding_error(scaled, family, method)
-    radii = np.abs(_eigenvalues(disturbed(scaled, rounding))).max(axis=-1)
+    radii = np.abs(_eigenvalues(disturbed(scaled, family, method))).max(axis=-1)
     return float(max(rounding, np.abs(radii - np.abs(_eigenvalues(scaled)).max()).max()))
 
 
@@ -457,7 +485,9 @@ class _Judged:
             better = better.refined()
             finer.append(_eigenvalues(better.scaled_transition_matrices(family))[0])
         rounding = rounding_error(scaled, family, method)
-        return cls(_eigenvalues(scaled), finer, list(_eigenvalues(disturbed(scaled, rounding))), rounding)
+        return cls(
+            _eigenvalues(scaled), finer, list(_eigenvalues(disturbed(scaled, family, method))), rounding
+        )
 
 
 def rounding_error(scaled: FloatArray, family: Family, method: Method) -> float:
@@ -466,11 +496,39 @@ def rounding_error(scaled: FloatArray, family: Family, method: Method) -> float:
     return float(places * np.finfo(float).eps * max(1.0, np.linalg.norm(scaled, 2)))
 
 
-def disturbed(matrix: FloatArray, size: float) -> FloatArray:
-    """Return a matrix (d, d) with changes of a given norm, always the same ones, shape (4, d, d)."""
-    changes = np.random.default_rng(0).normal(size=(_CHANGES, *matrix.shape))
-    norms = np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True)
-    return np.asarray(matrix + size * changes / norms, dtype=float)
+def disturbed(scaled: FloatArray, family: Family, method: Method) -> FloatArray:
+    """Return a scaled transition matrix (d, d) of a system with changes as large as rounding, shape (4, d, d).
+
+    What is lost on the way is as large as the motion is there, whatever its direction, since a method may follow it in
+    other coordinates than these; and it grows as the motion does from there on. So at the end of each of some stretches
+    of the period something is changed, and brought to the end of all. Where motions grow and die within a period, or a
+    jump of the state is taken back by another, that is more than Φ itself shows. The changes are always the same ones.
+    """
+    size = scaled.shape[-1]
+    rng = np.random.default_rng(0)
+    changed = scaled + rounding_error(scaled, family, method) * _changes(rng, size)
+    stretches = family.stretches(_STRETCHES)[0]
+    places = size + method.rounding(family) / len(stretches)
+    arriving, lost = np.eye(size), np.zeros_like(changed)
+    with np.errstate(over="ignore", invalid="ignore"):
+        for stretch in stretches:
+            terms = _norm(stretch) * _norm(arriving)
+            lost = stretch @ lost + terms * _changes(rng, size)
+            arriving = stretch @ arriving
+        lost *= places * np.finfo(float).eps
+    # Frozen motions may grow beyond double precision where those of the system do not.
+    return np.asarray(changed + lost if np.isfinite(lost).all() else changed, dtype=float)
+
+
+def _norm(matrix: FloatArray) -> float:
+    """Largest singular value, or NaN where something has grown beyond double precision."""
+    return float(np.linalg.norm(matrix, 2)) if np.isfinite(matrix).all() else float("nan")
+
+
+def _changes(rng: np.random.Generator, size: int) -> FloatArray:
+    """Random matrices of unit norm, shape (4, size, size)."""
+    changes = rng.normal(size=(_CHANGES, size, size))
+    return np.asarray(changes / np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True), dtype=float)
 
 
 def _eigenvalues(matrices: FloatArray) -> ComplexArray:

@@ -243,10 +243,13 @@ class _Equations(NamedTuple):
 def _equations(family: Family, rule: _Rule, start: FloatArray, length: FloatArray) -> _Equations:
     n, m, count = family.size, rule.nodes.size, start.size
     points = start[:, np.newaxis] + length[:, np.newaxis] * rule.nodes
-    # The last node is the end of the panel, where a pair may enter or leave: what counts is the side before.
+    # The last node is the end of the panel, where a pair may enter or leave: what counts is the side before. An instant
+    # a little earlier would do but for rounding, since A may change fast.
+    inner = family.state_matrices(points[:, :-1].ravel())
+    inner = inner.reshape(len(family.systems), count, m - 1, 2 * n, 2 * n)
+    last = family.state_matrices(points[:, -1], "left")
+    state = np.concatenate([inner, last[:, :, np.newaxis]], axis=2)
     points[:, -1] -= 4.0 * SAME_INSTANT
-    points = points.ravel()
-    state = family.state_matrices(points).reshape(len(family.systems), count, m, 2 * n, 2 * n)
     # y1' = a y2, y2' = L y1 + D y2 with a the same all along. Nodes come last but one: y2' of one coordinate at all
     # nodes stand together, which the long inner loops below like.
     a = state[:, :, 0, 0, n][..., np.newaxis, np.newaxis, np.newaxis]
@@ -260,7 +263,7 @@ def _equations(family: Family, rule: _Rule, start: FloatArray, length: FloatArra
     left[..., diagonal, diagonal] += 1.0
     right = np.concatenate([L, h * a * rule.nodes[:, np.newaxis] * L + D], axis=-1)
     right = right.reshape(*L.shape[:2], m * n, 2 * n)
-    return _Equations(left, right, h, a, points.reshape(count, m))
+    return _Equations(left, right, h, a, points)
 
 
 def _solved(

@@ -9,9 +9,11 @@ import numpy as np
 
 from facegear.floquet.collocation import chain
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, require_system
-from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev
+from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev, Side
 from facegear.support.types import ComplexArray, FloatArray
 
+# Largest norm of an exponent before it is squared.
+_SQUARED_FROM = 0.3
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB, and small stacks in cache.
 _STACK_ENTRIES = 500_000
 
@@ -54,8 +56,10 @@ def exponentials(matrices: FloatArray) -> FloatArray:
     with.
     """
     norm = float(np.abs(matrices).sum(axis=-2).max())
-    # Below 0.5 the first term left out, norm¹³/13!, is 2e-14.
-    squarings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.5))))
+    # Squarings multiply the first term left out, norm¹³/13!: below 0.3, it adds up to less than half a unit of the last
+    # place for each unit of the whole exponent, which is what rounding adds. No refinement would tell it where A is
+    # constant and sub-intervals are long.
+    squarings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / _SQUARED_FROM))))
     first = matrices / 2.0**squarings
     second = first @ first
     third = second @ first
@@ -159,7 +163,14 @@ class Family:
         norms = np.linalg.norm(self.state_matrices(self.middles), 2, axis=(-2, -1))
         return float((norms @ lengths).max())
 
-    def assembled(self, fraction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    @property
+    def factors(self) -> float:
+        """Number of exponentials of small exponents that those of a period are squared from, each of them rounded."""
+        return self.exponent_norm / _SQUARED_FROM
+
+    def assembled(
+        self, fraction: FloatArray, side: Side = "right"
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """M(t), C(t), K(t) at fractions (m,), each of shape (V, m, n, n) or with an axis of length 1."""
         mass, damping, stiffness = self.mass, self.damping, self.stiffness
         period = self.periods[:, None, None, None]
@@ -169,10 +180,10 @@ class Family:
                 for name in ("mass", "damping", "stiffness")
             )
             through = np.array([load.rate == "total" for load in loads])[:, None, None, None]
-            phi = _values(loads, lambda load: load.shape, fraction)
+            phi = _values(loads, lambda load: load.shape, fraction, side)
             force = phi
             if any(load.weight is not None for load in loads):
-                force = phi * _values(loads, lambda load: load.weight, fraction)
+                force = phi * _values(loads, lambda load: load.weight, fraction, side)
             dyad = force[..., :, None] * phi[..., None, :]
             stiffness = stiffness + k * dyad
             if c.any():
@@ -180,20 +191,24 @@ class Family:
             if m.any():
                 mass = mass + m * dyad
             if (through * c).any() or (through * m).any():
-                rate = force[..., :, None] * _values(loads, lambda load: load.slope, fraction)[..., None, :]
+                rate = (
+                    force[..., :, None]
+                    * _values(loads, lambda load: load.slope, fraction, side)[..., None, :]
+                )
                 stiffness = stiffness + (through * c / period) * rate
                 damping = damping + (2.0 * through * m / period) * rate
             if (through * m).any():
                 second = (
-                    force[..., :, None] * _values(loads, lambda load: load.curvature, fraction)[..., None, :]
+                    force[..., :, None]
+                    * _values(loads, lambda load: load.curvature, fraction, side)[..., None, :]
                 )
                 stiffness = stiffness + (through * m / period**2) * second
         return mass, damping, stiffness
 
-    def state_matrices(self, fraction: FloatArray) -> FloatArray:
+    def state_matrices(self, fraction: FloatArray, side: Side = "right") -> FloatArray:
         """T0 S A S⁻¹ at fractions (m,), shape (V, m, 2n, 2n)."""
         n = self.size
-        mass, damping, stiffness = self.assembled(fraction)
+        mass, damping, stiffness = self.assembled(fraction, side)
         inverse = np.linalg.inv(mass)
         scale, back = self.scale[n:, n:], self.inverse_scale[n:, n:]
         left = -self.periods[:, None, None, None] * (scale @ inverse)
@@ -218,6 +233,18 @@ class Family:
                 self._put_in_jumps(steps, start[part])
                 total = chain(steps) @ total
         return np.asarray(total)
+
+    def stretches(self, fewest: int) -> FloatArray:
+        """Roughly what each part of the period does to the scaled state, jumps at its start put in, (V, P, 2n, 2n).
+
+        By the midpoint rule, P at least `fewest`: enough to tell how large motions grow on the way.
+        """
+        edges = aligned_edges(self.breakpoints, fewest)
+        start, length = edges[:-1], np.diff(edges)
+        with np.errstate(over="ignore", invalid="ignore"):
+            steps = exponentials(midpoint(start, length, self.state_matrices))
+            self._put_in_jumps(steps, start)
+        return steps
 
     def _put_in_jumps(self, steps: FloatArray, start: FloatArray) -> None:
         """Precede the sub-interval that starts at the instant of a jump by the jump of the state."""
@@ -256,10 +283,11 @@ def _values(
     loads: Sequence[ContactLoad],
     part: Callable[[ContactLoad], PiecewiseChebyshev | None],
     fraction: FloatArray,
+    side: Side,
 ) -> FloatArray:
     """Values of one periodic function of each load, evaluated once if they share it: (V or 1, m, components)."""
     functions = [part(load) for load in loads]
     if all(function is functions[0] for function in functions):
         functions = functions[:1]
     one = np.ones((fraction.size, 1))
-    return np.stack([one if function is None else function(fraction) for function in functions])
+    return np.stack([one if function is None else function(fraction, side) for function in functions])

@@ -22,6 +22,7 @@ import numpy as np
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.floquet.multipliers import Method, with_method
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.piecewise import Side
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import integer_at_least, positive
@@ -186,31 +187,31 @@ class _VariedFamily(Family):
         self.systems = [system] * len(derivatives)
         self.size = 2 * self._single.size
 
-    def state_matrices(self, fraction: FloatArray) -> FloatArray:
+    def state_matrices(self, fraction: FloatArray, side: Side = "right") -> FloatArray:
         """Return [[B, 0], [dB/d ln p, B]] in scaled coordinates, shape (P, m, 4n, 4n)."""
         single = self._single
         n = single.size
-        plain = single.state_matrices(fraction)[0]
+        plain = single.state_matrices(fraction, side)[0]
         blocks = np.zeros((len(self._derivatives), fraction.size, 4 * n, 4 * n))
         blocks[..., : 2 * n, : 2 * n] = plain
         blocks[..., 2 * n :, 2 * n :] = plain
-        changes = self._changes(fraction)
+        changes = self._changes(fraction, side)
         for number, value in enumerate(self._values):
             blocks[number, :, 2 * n :, : 2 * n] = value * (
                 single.scale @ changes[number] @ single.inverse_scale
             )
         return blocks
 
-    def _changes(self, fraction: FloatArray) -> FloatArray:
+    def _changes(self, fraction: FloatArray, side: Side) -> FloatArray:
         """d(T0 A)/dp of each parameter at fractions (m,), shape (P, m, 2n, 2n)."""
         system = self._single.systems[0]
         n, period = system.size, system.period
         mass, damping, stiffness = (
-            np.broadcast_to(part[0], (fraction.size, n, n)) for part in self._single.assembled(fraction)
+            np.broadcast_to(part[0], (fraction.size, n, n)) for part in self._single.assembled(fraction, side)
         )
         inverse = np.linalg.inv(mass)
         accelerations = inverse @ np.concatenate([stiffness, damping], axis=-1)
-        dyads = [_dyads(load, fraction) for load in system.loads]
+        dyads = [_dyads(load, fraction, side) for load in system.loads]
         result = np.zeros((len(self._derivatives), fraction.size, 2 * n, 2 * n))
         for number, by in enumerate(self._derivatives):
             d_mass, d_damping, d_stiffness = (
@@ -233,11 +234,11 @@ class _VariedFamily(Family):
         return result
 
 
-def _dyads(load: ContactLoad, fraction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _dyads(load: ContactLoad, fraction: FloatArray, side: Side) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return w φφᵀ, w φφ'ᵀ and w φφ''ᵀ of a load at fractions (m,), each of shape (m, n, n)."""
-    phi = load.shape(fraction)
-    force = (phi if load.weight is None else phi * load.weight(fraction))[..., :, None]
-    parts = (phi, load.slope(fraction), load.curvature(fraction))
+    phi = load.shape(fraction, side)
+    force = (phi if load.weight is None else phi * load.weight(fraction, side))[..., :, None]
+    parts = (phi, load.slope(fraction, side), load.curvature(fraction, side))
     first, second, third = (force * part[..., None, :] for part in parts)
     return first, second, third
 
