@@ -499,30 +499,28 @@ def rounding_error(scaled: FloatArray, family: Family, method: Method) -> float:
 def disturbed(scaled: FloatArray, family: Family, method: Method) -> FloatArray:
     """Return a scaled transition matrix (d, d) of a system with changes as large as rounding, shape (4, d, d).
 
-    What is lost on the way is as large as the motion is there, whatever its direction, since a method may follow it in
-    other coordinates than these; and it grows as the motion does from there on. So at the end of each of some stretches
-    of the period something is changed, and brought to the end of all. Where motions grow and die within a period, or a
-    jump of the state is taken back by another, that is more than Φ itself shows. The changes are always the same ones.
+    What is lost on the way is as large as what is added up there, and grows as the motion does from there on. So at the
+    end of each of some stretches of the period something is changed, and brought to the end of all: by parts of
+    |stretch| |motion|, as the product of two matrices is, and beside a jump of the state in every direction, since a
+    method may mix what jumps with what does not. Where motions grow and die within a period, or a jump is taken back by
+    another, that is more than Φ itself shows. The changes are always the same ones.
     """
     size = scaled.shape[-1]
     rng = np.random.default_rng(0)
     changed = scaled + rounding_error(scaled, family, method) * _changes(rng, size)
-    stretches = family.stretches(_STRETCHES)[0]
+    (stretches,), (jumps,) = family.stretches(_STRETCHES)
     places = size + method.rounding(family) / len(stretches)
     arriving, lost = np.eye(size), np.zeros_like(changed)
     with np.errstate(over="ignore", invalid="ignore"):
-        for stretch in stretches:
-            terms = _norm(stretch) * _norm(arriving)
-            lost = stretch @ lost + terms * _changes(rng, size)
+        for stretch, jump in zip(stretches, jumps, strict=True):
+            added = np.abs(stretch) @ np.abs(arriving)
+            if jump > 0.0:
+                added += jump * np.abs(arriving).max()
+            lost = stretch @ lost + added * _changes(rng, size)
             arriving = stretch @ arriving
         lost *= places * np.finfo(float).eps
     # Frozen motions may grow beyond double precision where those of the system do not.
     return np.asarray(changed + lost if np.isfinite(lost).all() else changed, dtype=float)
-
-
-def _norm(matrix: FloatArray) -> float:
-    """Largest singular value, or NaN where something has grown beyond double precision."""
-    return float(np.linalg.norm(matrix, 2)) if np.isfinite(matrix).all() else float("nan")
 
 
 def _changes(rng: np.random.Generator, size: int) -> FloatArray:

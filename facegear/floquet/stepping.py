@@ -234,17 +234,28 @@ class Family:
                 total = chain(steps) @ total
         return np.asarray(total)
 
-    def stretches(self, fewest: int) -> FloatArray:
-        """Roughly what each part of the period does to the scaled state, jumps at its start put in, (V, P, 2n, 2n).
+    def stretches(self, fewest: int) -> tuple[FloatArray, FloatArray]:
+        """Roughly what each part of the period does to the scaled state, enough to tell how large motions grow.
 
-        By the midpoint rule, P at least `fewest`: enough to tell how large motions grow on the way.
+        By the midpoint rule, P parts, at least `fewest`.
+
+        Returns
+        -------
+        steps : array, shape (V, P, 2n, 2n)
+            Jumps at the starts put in.
+        sizes : array, shape (V, P)
+            ‖S J S⁻¹ − I‖ of these jumps, 0 where there is none.
         """
         edges = aligned_edges(self.breakpoints, fewest)
         start, length = edges[:-1], np.diff(edges)
         with np.errstate(over="ignore", invalid="ignore"):
             steps = exponentials(midpoint(start, length, self.state_matrices))
             self._put_in_jumps(steps, start)
-        return steps
+        sizes = np.zeros(steps.shape[:2])
+        for number, jumps in enumerate(self._scaled_jumps):
+            for at, jump in jumps.items():
+                sizes[number, np.abs(start - at) < SAME_INSTANT] = np.linalg.norm(jump - np.eye(len(jump)), 2)
+        return steps, sizes
 
     def _put_in_jumps(self, steps: FloatArray, start: FloatArray) -> None:
         """Precede the sub-interval that starts at the instant of a jump by the jump of the state."""
