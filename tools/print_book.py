@@ -133,6 +133,8 @@ def print_book(source: Path, target: Path) -> None:
         here = f"http://127.0.0.1:{server.server_port}/"
         browser = playwright.chromium.launch(executable_path=chromium, args=FLAGS)
         page = browser.new_page(viewport={"width": WIDTH, "height": 1200})
+        # The whole book is one page: beside other work it takes longer to load than the half minute of a usual one.
+        page.set_default_timeout(180_000)
 
         def guard(route: Route) -> None:
             if route.request.url.startswith(here):
