@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,10 @@ from facegear.floquet.collocation import UnsuitableSystemError, transition_matri
 from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.multipliers import Method, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.response import SteadyResponse
 from facegear.support.types import ComplexArray, FloatArray
+
+if TYPE_CHECKING:
+    from facegear.floquet.response import SteadyResponse
 
 Kind = Literal["sum", "difference", "mean"]
 

@@ -54,7 +54,8 @@ def _of_generating(
     return computed
 
 
-def _involute(angle: float) -> float:
+def involute(angle: float) -> float:
+    """Involute function tan α − α of a pressure angle [rad]."""
     return math.tan(angle) - angle
 
 
@@ -244,7 +245,7 @@ class Drive:
     def _half_tooth_at_shaper_tip(self) -> float:
         """Half angle of the shaper's tooth at its addendum circle [rad]; zero when pointed."""
         at_tip = math.acos(self.base_radius / self.shaper_tip_radius)
-        return math.pi / (2 * self.pinion_teeth) + _involute(self.pressure_angle) - _involute(at_tip)
+        return math.pi / (2 * self.pinion_teeth) + involute(self.pressure_angle) - involute(at_tip)
 
     @property
     @_of_generating

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,7 +24,7 @@ from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
 from facegear.geometry.contact_lines import ContactRegion
-from facegear.geometry.drive import Drive
+from facegear.geometry.drive import Drive, involute
 from facegear.geometry.kinematics import PairStates, TimedPairs
 from facegear.support.parameters import finite, finite_array, keep, nonnegative, positive
 from facegear.support.types import FloatArray
@@ -124,7 +124,7 @@ class UnloadedContact:
     """
 
     drive: Drive
-    misalignment: Misalignment = field(default=ALIGNED)
+    misalignment: Misalignment = ALIGNED
 
     def __post_init__(self) -> None:
         for name, kind in (("drive", Drive), ("misalignment", Misalignment)):
@@ -198,7 +198,7 @@ class UnloadedContact:
             return float(region.depth(q, roll)) - shaper.tooth_top_distance
 
         def inside(roll: float) -> float:
-            return self._radius_of(roll) - max(shaper.inner_radius, shaper.flank_start)
+            return self._radius_of(roll) - shaper.flank_start
 
         def outside(roll: float) -> float:
             return shaper.outer_radius - self._radius_of(roll)
@@ -213,7 +213,7 @@ class UnloadedContact:
 
     def _beyond(self, roll: float) -> str:
         radius, shaper = self._radius_of(roll), self._shaper
-        if radius < max(shaper.inner_radius, shaper.flank_start):
+        if radius < shaper.flank_start:
             return f"inside the inner edge at {1e3 * shaper.inner_radius:.3f} mm, where an edge bears"
         if radius > shaper.outer_radius:
             return f"outside the outer edge at {1e3 * shaper.outer_radius:.3f} mm, where an edge bears"
@@ -412,7 +412,7 @@ class UnloadedContact:
             return float(self._offset(q)) - here - depth
 
         ends = []
-        for edge in (max(shaper.inner_radius, shaper.flank_start), shaper.outer_radius):
+        for edge in (shaper.flank_start, shaper.outer_radius):
             q = self._region.edge_angle(edge, roll)
             ends.append(q if excess(q) <= 0.0 else float(brentq(excess, middle, q, xtol=1e-15)))
         return float(self._region.position(ends[0])), float(self._region.position(ends[1]))
@@ -432,7 +432,7 @@ class UnloadedContact:
             offset + self.misalignment.gear_axial * math.sin(self.drive.shaft_angle),
         )
         working = math.acos(offset * math.cos(alpha) / centre)
-        return 2.0 * centre * (_involute(alpha) - _involute(working))
+        return 2.0 * centre * (involute(alpha) - involute(working))
 
 
 @dataclass(frozen=True)
@@ -539,10 +539,6 @@ def _rotated(vectors: FloatArray, axis: FloatArray, angles: FloatArray) -> Float
     cosine, sine = np.cos(angles)[..., np.newaxis], np.sin(angles)[..., np.newaxis]
     along = (vectors @ axis)[..., np.newaxis] * axis
     return np.asarray(vectors * cosine + _cross(axis, vectors) * sine + along * (1.0 - cosine), dtype=float)
-
-
-def _involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 def _where_positive(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:

@@ -17,8 +17,8 @@ from facegear.floquet.multipliers import Method
 from facegear.floquet.response import SteadyResponse, steady_response
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
-from facegear.maps.stability_map import checked_speeds
-from facegear.support.parameters import finite_array, number_of_workers, rpm
+from facegear.maps.stability_map import checked_speeds, speed_coordinates
+from facegear.support.parameters import finite_array, number_of_workers
 from facegear.support.types import FloatArray
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def frequency_response(
     speeds = checked_speeds(speeds)
     _require_excitation(model.system(float(speeds[0])))
     found = _computed([model], speeds, method, jobs, progress, cache_directory)[0]
-    dataset = _dataset(found, ("speed",), _speed_coordinates(speeds), model, method)
+    dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, method)
     return dataset.assign(_peaks(model, speeds, dataset, method))
 
 
@@ -131,7 +131,7 @@ def response_map(
     _require_excitation(models[0].system(float(speeds[0])))
     found = _computed(models, speeds, method, jobs, progress, cache_directory)
     along = {path[-1]: (path[-1], given, {"long_name": ".".join(path)})}
-    return _dataset(found, (path[-1], "speed"), along | _speed_coordinates(speeds), model, method)
+    return _dataset(found, (path[-1], "speed"), along | speed_coordinates(speeds), model, method)
 
 
 def _require_excitation(system: Any) -> None:
@@ -212,13 +212,6 @@ def _computed(
     for number, result in computed(tasks, "response", jobs, progress, cache_directory):
         numbers[tasks[number].row, tasks[number].place] = result
     return numbers
-
-
-def _speed_coordinates(speeds: FloatArray) -> dict[str, Any]:
-    return {
-        "speed": ("speed", speeds, {"units": "rad/s", "long_name": "speed"}),
-        "speed_rpm": ("speed", rpm(speeds), {"units": "rpm", "long_name": "speed"}),
-    }
 
 
 def _dataset(

@@ -152,9 +152,8 @@ def stability_map(
         dims=(name, "speed"),
         coords={
             name: (name, values, {"long_name": ".".join(parameter_path(model, parameter))}),
-            "speed": ("speed", speeds, {"units": "rad/s", "long_name": "speed"}),
-            "speed_rpm": ("speed", rpm(speeds), {"units": "rpm", "long_name": "speed"}),
-        },
+        }
+        | speed_coordinates(speeds),
         name="growth_rate",
         attrs={
             "units": "1/s",
@@ -184,6 +183,14 @@ def checked_speeds(speeds: ArrayLike) -> FloatArray:
     if (np.diff(array) <= 0.0).any():
         raise ValueError("speeds must ascend strictly, got equal or descending neighbours")
     return array
+
+
+def speed_coordinates(speeds: FloatArray) -> dict[str, Any]:
+    """Coordinates of a map along speeds (S,) [rad/s], in both units."""
+    return {
+        "speed": ("speed", speeds, {"units": "rad/s", "long_name": "speed"}),
+        "speed_rpm": ("speed", rpm(speeds), {"units": "rpm", "long_name": "speed"}),
+    }
 
 
 def _checked_values(values: ArrayLike) -> FloatArray:
