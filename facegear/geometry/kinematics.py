@@ -50,13 +50,16 @@ class PairStates(NamedTuple):
     angle : ndarray, shape (P,) + S
         θ_j, space-fixed about the gear's axis from the pinion's axis [rad].
     length : ndarray, shape (P,) + S
-        l_j of the contact line [m].
+        l_j of the contact line [m]; of a contact under load the force of the pair [N], which weights it alike.
+    stiffness : ndarray, shape (P,) + S, optional
+        Of the pair over the mean mesh stiffness k_m [-]; None: all of it.
     """
 
     in_contact: NDArray[np.bool_]
     radius: FloatArray
     angle: FloatArray
     length: FloatArray
+    stiffness: FloatArray | None = None
 
 
 class Centroid(NamedTuple):
@@ -96,7 +99,7 @@ def checked_contact_ratio(drive: Drive, contact_ratio: float | None) -> float:
     return float(round(ratio)) if abs(ratio - round(ratio)) < _SHORTEST else ratio
 
 
-def _merged(instants: list[float]) -> tuple[float, ...]:
+def merged(instants: list[float]) -> tuple[float, ...]:
     """Fractions of a mesh period in ascending order from 0, without repetitions."""
     fractions = sorted(instant - math.floor(instant) for instant in instants)
     kept = [0.0]
@@ -146,7 +149,7 @@ class TimedPairs(ABC):
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions of T0 in [0, 1), ascending from 0, where a pair enters (0) or leaves (cr − ⌊cr⌋)."""
-        return _merged([0.0, self.contact_ratio])
+        return merged([0.0, self.contact_ratio])
 
     def pair_states(self, x: ArrayLike) -> PairStates:
         """Contact points of all pairs at times x [mesh periods], any real numbers of shape S; period 1."""
@@ -263,12 +266,12 @@ class ContactPath(TimedPairs):
         count = math.ceil(math.log(width / max(beyond - instant, _SHORTEST), _GRADING))
         if count <= 2:
             return corners
-        return _merged([*corners, *(instant - width / _GRADING**k for k in range(1, count + 1))])
+        return merged([*corners, *(instant - width / _GRADING**k for k in range(1, count + 1))])
 
     @cached_property
     def _corners(self) -> tuple[float, ...]:
         """Fractions of T0 at which a pair enters, leaves, or an end of its line changes edge."""
-        return _merged([0.0, self.contact_ratio, *map(self._age, self.drive.kink_rotations)])
+        return merged([0.0, self.contact_ratio, *map(self._age, self.drive.kink_rotations)])
 
     def _age(self, rotation: float) -> float:
         """Mesh periods since entry at a pinion rotation φs."""

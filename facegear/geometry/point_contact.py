@@ -147,7 +147,7 @@ class UnloadedContact:
     @cached_property
     def pressure_angle(self) -> float:
         """Local pressure angle q of the contact [rad], the same all through the mesh."""
-        rising = [q for q in self.roots if self._residual(q + 1e-6) > self._residual(q - 1e-6)]
+        rising = [q for q in self.roots if self.residual(q + 1e-6) > self.residual(q - 1e-6)]
         if not rising:
             raise ValueError(
                 "misalignment leaves no normal of the flank that touches the pinion's base circle: its teeth and those "
@@ -163,10 +163,10 @@ class UnloadedContact:
         Where the distance rises through it flanks touch from outside; where it falls they would have to cross.
         """
         angles = np.linspace(-_STEEPEST, _STEEPEST, _PARTS + 1)
-        values = self._residual(angles)
+        values = self.residual(angles)
         change = np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))
         return tuple(
-            float(brentq(self._residual, angles[i], angles[i + 1], xtol=1e-16, rtol=8.9e-16)) for i in change
+            float(brentq(self.residual, angles[i], angles[i + 1], xtol=1e-16, rtol=8.9e-16)) for i in change
         )
 
     @property
@@ -184,7 +184,7 @@ class UnloadedContact:
 
     @cached_property
     def _rolls(self) -> tuple[float, float]:
-        """Roll angles θs of the shaper at which contact ends at the gear's tooth top, and begins at the pinion's tip.
+        """Roll angles θs of the shaper at which contact begins at the gear's tooth top, and ends at the pinion's tip.
 
         Between the edges of the face; where the pinion's base circle or the shaper's tip comes first, there.
         """
@@ -242,7 +242,7 @@ class UnloadedContact:
         at = np.array([given.offset, -offset, pivot]) - given.gear_axial * self._gear_axis
         return at, np.array([0.0, math.sin(given.shaft_angle), math.cos(given.shaft_angle)])
 
-    def _turn(self, q: ArrayLike) -> FloatArray:
+    def turn(self, q: ArrayLike) -> FloatArray:
         """ψ, by which the gear turns from where the shaper made q until the normal is square to the pinion [rad]."""
         normal, axis, k = _normal(q), self._pinion_axis[1], self._gear_axis
         along = (normal @ k) * float(k @ axis)
@@ -260,7 +260,7 @@ class UnloadedContact:
 
         These are measured along the line from its foot on the pinion's base circle [m]; a roll angle θs adds r_bs θs.
         """
-        turn = self._turn(q)
+        turn = self.turn(q)
         base = self._shaper.base_radius
         components = (base * np.sin(q), -base * np.cos(q), self._region.position(np.asarray(q)))
         start = np.stack(np.broadcast_arrays(*components), axis=-1)
@@ -269,8 +269,8 @@ class UnloadedContact:
         away = start - at
         return normal, (away * _cross(axis, normal)).sum(axis=-1), (away * normal).sum(axis=-1)
 
-    def _residual(self, q: ArrayLike) -> FloatArray:
-        """A(q) [m]."""
+    def residual(self, q: ArrayLike) -> FloatArray:
+        """A(q), by how much normals pass the pinion's base circle at a distance [m]."""
         return self._line(q)[1] - self.drive.base_radius
 
     # --- gap and curvature ------------------------------------------------------------------------------------
@@ -304,13 +304,22 @@ class UnloadedContact:
 
     def _offset(self, q: ArrayLike) -> FloatArray:
         """Gap of the slice at q but for a constant: place of the gear's tangent plane less that of the pinion's [m]."""
-        normal, _, start = self._line(q)
-        shaper, own = self._shaper, self.drive
-        # At one rotation of the gear, θs = q + ψ/m but for a constant; θ1 = q1, the direction of n about the pinion.
-        gear = start + shaper.base_radius * (np.asarray(q) + self._turn(q) / shaper.speed_ratio)
+        shaper = self._shaper
+        # At one rotation of the gear, θs = q + ψ/m but for a constant; θ1 is the direction of n about the pinion.
+        gear = self._line(q)[2] + shaper.base_radius * (np.asarray(q) + self.turn(q) / shaper.speed_ratio)
+        return np.asarray(gear - self.drive.base_radius * self.direction(q), dtype=float)
+
+    def direction(self, q: ArrayLike) -> FloatArray:
+        """Angle about the pinion's axis of the normals at q, which is its roll angle θ1 but for a rotation [rad]."""
+        normal = self._line(q)[0]
         across = np.cross(self._pinion_axis[1], [1.0, 0.0, 0.0])
-        own_angle = np.arctan2(-normal @ across, -normal[..., 0])
-        return np.asarray(gear - own.base_radius * own_angle, dtype=float)
+        return np.asarray(np.arctan2(-normal @ across, -normal[..., 0]), dtype=float)
+
+    def own_roll(self, q: ArrayLike, roll: ArrayLike) -> FloatArray:
+        """Roll angle of the pinion's involute next to the point (q, θs) of the gear's flank [rad]."""
+        return np.asarray(
+            (self._line(q)[2] + self._shaper.base_radius * np.asarray(roll)) / self.drive.base_radius
+        )
 
     @property
     def principal_curvatures(self) -> FloatArray:
@@ -343,7 +352,7 @@ class UnloadedContact:
         normal, _, start = self._line(q)
         axis = self._pinion_axis[1]
         profile = np.cross(axis, normal)
-        shaper_axis = _rotated(np.array([0.0, 0.0, 1.0]), self._gear_axis, self._turn(q))
+        shaper_axis = _rotated(np.array([0.0, 0.0, 1.0]), self._gear_axis, self.turn(q))
         shaper_profile = np.cross(shaper_axis, normal)
         # The shaper touches the gear along a line at β to its axis, and is flatter than the gear across it by κ.
         m, supplement = self._shaper.speed_ratio, math.pi - self.drive.shaft_angle

@@ -20,7 +20,7 @@ import numpy as np
 from facegear.floquet.periodic import Rate
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, SkewLine, TimedPairs, checked_contact_ratio
+from facegear.geometry.kinematics import ContactPath, SkewLine, TimedPairs
 from facegear.support.parameters import finite, keep, one_of, within
 from facegear.support.types import FloatArray
 
@@ -35,16 +35,17 @@ class Contact:
     Parameters
     ----------
     path : class
-        Law of the contact points, called with a drive and a contact ratio: :class:`ContactPath`, the midpoints of the
-        true contact lines; :class:`SkewLine`, the straight line of (3-22); or another
+        Law of the contact points, called with a drive and a contact ratio or None: :class:`ContactPath`, the midpoints
+        of the true contact lines; :class:`SkewLine`, the straight line of (3-22); those of
+        :mod:`facegear.mechanics.paths`, on their own clocks; or another
         :class:`facegear.geometry.kinematics.TimedPairs`.
     sharing : {"centroid", "mean", "each"}
         One load at the mean contact point, weighted by the lengths of the contact lines (3-21) or with equal weights;
         or one load for each tooth pair, numbered by age, there while the pair is in mesh.
     contact_ratio : float, optional
         Mesh periods that a tooth pair stays in mesh, 1 or more, and 1.001 or more where total rate follows a mean
-        point. Default None: Tregold's, as printed, that of whatever drive there is; `drive.geometric_contact_ratio` is
-        that of the true sweep. A number stays when the drive is replaced.
+        point. Default None: that of the path, whatever the drive, which is Tregold's, as printed, for those of the
+        dissertation. A number stays when the drive is replaced.
     rate : {"frozen", "total"}
         Whether a spring, damper or mass at the contact follows ∂w/∂t at the contact point ("frozen", as printed in
         4-1) or the displacement under the moving point ("total", chapter 7).
@@ -66,7 +67,7 @@ class Contact:
     (2,)
     """
 
-    path: Callable[[Drive, float], TimedPairs] = ContactPath
+    path: Callable[[Drive, float | None], TimedPairs] = ContactPath
     sharing: Sharing = "centroid"
     contact_ratio: float | None = None
     rate: Rate = "frozen"
@@ -88,14 +89,14 @@ class Contact:
         return -1.0 if self.travel == "with_disk" else 1.0
 
     def ratio(self, drive: Drive) -> float:
-        """Mesh periods that a tooth pair of a drive stays in mesh: `contact_ratio`, else Tregold's (3-23 to 3-26).
+        """Mesh periods that a tooth pair of a drive stays in mesh: `contact_ratio`, else that of the path.
 
         Raises
         ------
         TypeError, ValueError
             If it is not valid for the drive.
         """
-        return checked_contact_ratio(drive, self.contact_ratio)
+        return _path(self.path, drive, self.contact_ratio).contact_ratio
 
     def require(self, drive: Drive) -> None:
         """Refuse a drive whose contact is not computed with these settings.
@@ -106,9 +107,8 @@ class Contact:
             Saying why: the path is none, the contact ratio is out of range, the path has no lengths to share by, or
             total rate would follow a point without a finite speed.
         """
-        ratio = self.ratio(drive)
         try:
-            path = self.path(drive, ratio)
+            path = _path(self.path, drive, self.contact_ratio)
         except TypeError:
             path = None
         if not isinstance(path, TimedPairs):
@@ -136,7 +136,7 @@ class Contact:
         tuple of LoadPlace
             One load, or one for each tooth pair.
         """
-        return _places(self.path, self.sharing, drive, self.ratio(drive))
+        return _places(self.path, self.sharing, drive, self.contact_ratio)
 
 
 CENTROID = Contact()
@@ -158,11 +158,14 @@ class LoadPlace:
         Whether there is a load, one for each piece.
     tolerances : ndarray, shape (pieces,)
         Relative errors that a fit along the path may have [-].
+    weight : PiecewiseChebyshev, optional
+        Stiffness of the load over that of a pair pressed over the whole face [-]; None: all of it.
     """
 
     position: PiecewiseChebyshev
     in_contact: tuple[bool, ...]
     tolerances: FloatArray
+    weight: PiecewiseChebyshev | None = None
 
     def shape(self, vector: Callable[[FloatArray, FloatArray], FloatArray]) -> PiecewiseChebyshev:
         """Shape vector along the path, zero while there is no load.
@@ -214,34 +217,51 @@ class LoadPlace:
             change(PiecewiseChebyshev(self.position.breakpoints, numbers)).coefficients[:, 0, 0].astype(int)
         )
         return LoadPlace(
-            change(self.position), tuple(self.in_contact[i] for i in moved), self.tolerances[moved]
+            change(self.position),
+            tuple(self.in_contact[i] for i in moved),
+            self.tolerances[moved],
+            None if self.weight is None else change(self.weight),
         )
+
+
+_Path = Callable[[Drive, float | None], TimedPairs]
+
+
+@lru_cache(maxsize=256)
+def _path(kind: _Path, drive: Drive, contact_ratio: float | None) -> TimedPairs:
+    return kind(drive, contact_ratio)
 
 
 @lru_cache(maxsize=256)
 def _places(
-    kind: Callable[[Drive, float], TimedPairs], sharing: Sharing, drive: Drive, contact_ratio: float
+    kind: _Path, sharing: Sharing, drive: Drive, contact_ratio: float | None
 ) -> tuple[LoadPlace, ...]:
-    path = kind(drive, contact_ratio)
+    path = _path(kind, drive, contact_ratio)
     edges = np.append(path.breakpoints, 1.0)
     middles = (edges[:-1] + edges[1:]) / 2.0
     each = sharing == "each"
 
     def place(load: int) -> LoadPlace:
-        in_contact = tuple((middles + load < contact_ratio).tolist()) if each else (True,) * middles.size
+        in_contact = tuple((middles + load < path.contact_ratio).tolist()) if each else (True,) * middles.size
 
         def position(fraction: FloatArray, piece: int) -> FloatArray:
             local = (2.0 * fraction - edges[piece] - edges[piece + 1]) / (edges[piece + 1] - edges[piece])
             states = path.pair_states_on_piece(piece, np.clip(local, -1.0, 1.0))
             if each:
                 radius, angle = states.radius[load], states.angle[load]
+                stiffness = None if states.stiffness is None else states.stiffness[load]
             else:
+                stiffness = None if states.stiffness is None else states.stiffness.sum(axis=0)
                 weight = states.length if sharing == "centroid" else states.in_contact.astype(float)
                 weight = weight / weight.sum(axis=0)
                 radius, angle = (weight * states.radius).sum(axis=0), (weight * states.angle).sum(axis=0)
-            return np.stack([radius / drive.outer_radius, angle], axis=-1)
+            parts = [radius / drive.outer_radius, angle, *([] if stiffness is None else [stiffness])]
+            return np.stack(parts, axis=-1)
 
         fitted = PiecewiseChebyshev.fit(position, path.breakpoints, tolerance=path.fit_tolerances)
-        return LoadPlace(fitted, in_contact, path.fit_tolerances)
+        if fitted.components == 2:
+            return LoadPlace(fitted, in_contact, path.fit_tolerances)
+        place, weight = fitted.transformed(np.eye(3)[:2]), fitted.transformed(np.eye(3)[2:])
+        return LoadPlace(place, in_contact, path.fit_tolerances, weight)
 
     return tuple(place(load) for load in range(path.pairs if each else 1))

@@ -231,7 +231,7 @@ class InSi(Protocol):
 
 @lru_cache(maxsize=256)
 def _shapes(drive: Drive, contact: Contact, arm: Arm) -> tuple[PiecewiseChebyshev, ...]:
-    """Shape vector of each load against t/T0."""
+    """Shape vector of each load against t/T0, of :meth:`Contact.places`."""
 
     def vector(x: FloatArray, angle: FloatArray) -> FloatArray:
         # Arm about the face-gear axis [m]
@@ -246,12 +246,14 @@ def _shapes(drive: Drive, contact: Contact, arm: Arm) -> tuple[PiecewiseChebyshe
 
 @lru_cache(maxsize=256)
 def _mean_dyad(drive: Drive, contact: Contact, arm: Arm) -> FloatArray:
-    """Mean over the mesh period of Σ φφᵀ, shape (3, 3) [m²]."""
+    """Mean over the mesh period of Σ wφφᵀ, shape (3, 3) [m²]; w is what a load has of k_m."""
     shapes = _shapes(drive, contact, arm)
+    weights = [place.weight for place in contact.places(drive)]
 
     def dyads(fraction: FloatArray) -> FloatArray:
         vectors = np.stack([shape(fraction) for shape in shapes])
-        return np.asarray(np.einsum("pmi,pmj->mij", vectors, vectors))
+        stiffness = [np.ones((fraction.size, 1)) if weight is None else weight(fraction) for weight in weights]
+        return np.asarray(np.einsum("pmi,pmj,pmk->mij", vectors, vectors, np.stack(stiffness)))
 
     mean = fourier_series(dyads, shapes[0].breakpoints, 1).mean
     mean.setflags(write=False)
@@ -269,7 +271,8 @@ class Torsional:
         :class:`facegear.mechanics.gearboxes.ProportionalGearbox`.
     contact : Contact
         How the tooth pairs touch. Default as printed: each pair on the skew line (3-22), with Tregold's contact ratio
-        and total rate. Every load of it has the whole stiffness k_m of a pair.
+        and total rate. Every load of it has the whole stiffness k_m of a pair, and the whole damping c_m, unless the
+        path says what part (:class:`facegear.mechanics.paths.loaded_contact`).
     arm : {"printed", "conjugate"}
         Moment arm of the mesh force about the face-gear axis: r(t) cos α_c as printed in (7-3), or r_b1 N2/N1, the
         constant arm of the conjugate tooth, wherever the contact point is.
@@ -361,8 +364,9 @@ class Torsional:
                 stiffness=gearbox.mesh_stiffness,
                 damping=gearbox.mesh_damping,
                 rate=self.contact.rate,
+                weight=place.weight,
             )
-            for shape in self.shapes
+            for shape, place in zip(self.shapes, self.contact.places(self.drive), strict=True)
         )
         return PeriodicSystem(
             gearbox.mass_matrix,

@@ -1,0 +1,464 @@
+"""Contact of a real drive under load: how many teeth carry it, where they are pressed, how stiff the mesh is.
+
+Teeth press where their approach δ along the normal exceeds the gap of their slices (:mod:`facegear.mechanics.slices`).
+All pairs in mesh have one approach, as both gears turn as rigid bodies; δ follows from equilibrium with the torque at
+every instant. Where it exceeds all gaps, contact is along whole lines, as between equal pinion and shaper; as it goes to
+0, at the point of the unloaded contact.
+
+How a tooth gives way is a `Compliance`. Two of them bound the truth: slices of a Winkler bedding, each for itself
+(`slice`), and rigid teeth on one spring a pair (`pair`). A tooth between them, an elastic plate, resists more where its
+neighbours are not pressed.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
+from facegear.geometry.contact_lines import crossing
+from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import merged
+from facegear.geometry.point_contact import ALIGNED, Misalignment
+from facegear.mechanics.slices import Slices
+from facegear.mechanics.torsional import mesh_stiffness
+from facegear.support.parameters import STEEL, Material, finite_array, keep, one_of, positive
+from facegear.support.types import FloatArray
+
+# Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.
+_INSTANTS, _FINER = 64, 4
+# Newton's rule for the approach: steps, and the error at which it ends, relative.
+_STEPS, _SETTLED = 60, 1e-12
+# Relative error of series over a mesh period.
+_TOLERANCE = 1e-12
+# How short a piece must be, in mesh periods, before it may have more.
+_SHORT = 1e-3
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+class Lines(NamedTuple):
+    """What a pair of teeth has in mesh at instants of shape S, as slices s [√m]; nothing where both are one.
+
+    Attributes
+    ----------
+    inner, outer : ndarray, shape S
+    """
+
+    inner: FloatArray
+    outer: FloatArray
+
+
+@dataclass(frozen=True)
+class Compliance(ABC):
+    """How pairs of teeth give way.
+
+    Parameters
+    ----------
+    slices : Slices
+    pair_stiffness : float
+        k_m of a pair pressed over the whole face [N/m].
+    """
+
+    slices: Slices
+    pair_stiffness: float
+
+    @abstractmethod
+    def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        """Force [N] and stiffness [N/m] of pairs at an approach [m], both of one shape."""
+
+    @abstractmethod
+    def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        """Ends of the contact as slices, and slices with the shares of the load that they have.
+
+        Returns
+        -------
+        slices, shares : ndarray, shape S + (m,)
+            s [√m], and weights that add up to 1 [-].
+        """
+
+    events: ClassVar[tuple[tuple[int, int], ...]]
+    """What is pressed, or how, changes where an end of a line (0 inner, 1 outer) passes so many times √δ."""
+
+
+@dataclass(frozen=True)
+class SliceCompliance(Compliance):
+    """Each slice for itself, k_m/L: the softest, as no slice is held by its neighbours (Winkler)."""
+
+    # Contact begins, ends, or comes to an end of its line.
+    events = ((0, 1), (0, -1), (1, 1), (1, -1))
+
+    @property
+    def _foundation(self) -> float:
+        """Stiffness per length of face [N/m²]."""
+        return self.pair_stiffness / self.slices.drive.face_width
+
+    def _contact(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        reach = np.sqrt(approach)
+        first = np.maximum(lines.inner, -reach)
+        return first, np.maximum(np.minimum(lines.outer, reach), first)
+
+    def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        """∫ (δ − g) du times k_m/L, and the length of contact times it."""
+        first, last = self._contact(approach, lines)
+        distance, area = self.slices.distance_and_area(np.stack([first, last]))
+        length = distance[1] - distance[0]
+        force = approach * length - (area[1] - area[0])
+        return self._foundation * force, self._foundation * length
+
+    def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        """As the gap leaves it, on Gauss–Legendre nodes."""
+        first, last = (end[..., np.newaxis] for end in self._contact(approach, lines))
+        s = 0.5 * (first + last) + 0.5 * (last - first) * _NODES
+        reach = np.sqrt(approach)[..., np.newaxis]
+        shares = np.maximum((reach - s) * (reach + s), 0.0) * self.slices.position.deriv()(s) * _WEIGHTS
+        whole = shares.sum(axis=-1, keepdims=True)
+        # A pair that just touches does so at one place.
+        return s, np.where(whole > 0.0, shares, _WEIGHTS) / np.where(whole > 0.0, whole, 2.0)
+
+
+@dataclass(frozen=True)
+class PairCompliance(Compliance):
+    """Rigid teeth on one spring a pair: it touches at the least gap of its line, and has all of k_m there."""
+
+    # Contact begins, ends, or its slice comes to an end of the line.
+    events = ((0, 1), (1, -1), (0, 0), (1, 0))
+
+    def _nearest(self, lines: Lines) -> FloatArray:
+        return np.clip(0.0, lines.inner, lines.outer)
+
+    def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        """k_m (δ − g) at the least gap."""
+        pressed = approach - self._nearest(lines) ** 2
+        there = (pressed > 0.0) & (lines.inner < lines.outer)
+        return self.pair_stiffness * np.where(there, pressed, 0.0), self.pair_stiffness * there
+
+    def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        """All at one slice."""
+        s = self._nearest(lines)[..., np.newaxis]
+        return s, np.ones_like(s)
+
+
+class LoadedPairs(NamedTuple):
+    """What pairs of teeth carry at instants of shape S; rows are pairs.
+
+    Attributes
+    ----------
+    force : ndarray, shape (P,) + S
+        Along the normal [N]; 0 of a pair that is not pressed.
+    stiffness : ndarray, shape (P,) + S
+        Against a small further approach [N/m].
+    radius, angle : ndarray, shape (P,) + S
+        Centre of the pressure: r [m] and θ about the gear's axis, from the pinion's [rad].
+    approach : ndarray, shape (P,) + S
+        δ [m], the same for all pairs.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    radius: FloatArray
+    angle: FloatArray
+    approach: FloatArray
+
+
+COMPLIANCES: dict[str, type[Compliance]] = {"slice": SliceCompliance, "pair": PairCompliance}
+"""Laws of compliance by name."""
+
+
+@lru_cache(maxsize=64)
+def _slices(drive: Drive, misalignment: Misalignment) -> Slices:
+    return Slices(drive, misalignment)
+
+
+@dataclass(frozen=True)
+class LoadedContact:
+    """Contact of a pinion and a face gear cut by a shaper with more teeth, under a torque.
+
+    Parameters
+    ----------
+    drive : Drive
+        Its `shaper_teeth` exceed `pinion_teeth`.
+    torque : float
+        At the pinion [N m], greater than 0.
+    misalignment : Misalignment
+        Default: none.
+    compliance : {"slice", "pair"}
+        How teeth give way: each slice of the face for itself, k_m/L (`SliceCompliance`), or each pair as a rigid body
+        on one spring k_m (`PairCompliance`). They bound the truth.
+    correction_factor : float
+        c_f of the mean mesh stiffness k_m (7-2), from above 0 to 1.
+    material : Material
+        Of the teeth. Default: steel.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If contact is along lines or not on the flank, or an argument is of the wrong kind or outside its range.
+
+    Examples
+    --------
+    >>> contact = LoadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27), torque=1000.0)
+    >>> round(contact.contact_ratio, 4)
+    2.8551
+    >>> contact.mesh_stiffness([0.0, 0.5]).shape
+    (2,)
+    """
+
+    drive: Drive
+    torque: float
+    misalignment: Misalignment = ALIGNED
+    compliance: str = "slice"
+    correction_factor: float = 0.5
+    material: Material = STEEL
+
+    def __post_init__(self) -> None:
+        for name, kind in (("drive", Drive), ("misalignment", Misalignment), ("material", Material)):
+            if not isinstance(getattr(self, name), kind):
+                raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
+        one_of("compliance", self.compliance, tuple(COMPLIANCES))
+        keep(self, torque=positive("torque", self.torque, "N m"))
+        mesh_stiffness(self.drive, self.correction_factor, self.material)
+        _ = self.slices
+
+    @property
+    def slices(self) -> Slices:
+        """Gap and lines of the flanks."""
+        return _slices(self.drive, self.misalignment)
+
+    @property
+    def force(self) -> float:
+        """Force of all pairs along the normal [N]: torque over the pinion's base radius."""
+        return self.torque / self.drive.base_radius
+
+    @property
+    def pair_stiffness(self) -> float:
+        """k_m of a pair pressed over the whole face [N/m] (7-2)."""
+        return mesh_stiffness(self.drive, self.correction_factor, self.material)
+
+    @cached_property
+    def _law(self) -> Compliance:
+        return COMPLIANCES[self.compliance](self.slices, self.pair_stiffness)
+
+    # --- equilibrium ------------------------------------------------------------------------------------------
+
+    def _lines(self, ages: FloatArray) -> Lines:
+        """Lines of pairs so many mesh periods after the first line on both flanks; empty before it and after."""
+        inner, outer = self.slices.ends(ages)
+        beyond = (ages < 0.0) | (ages > self.slices.sweep)
+        return Lines(np.where(beyond, 0.0, inner), np.where(beyond, 0.0, outer))
+
+    def _all_pairs(self, instants: FloatArray) -> FloatArray:
+        """Ages since the first line of all pairs that may be in mesh, shape (K,) + S."""
+        start = instants - np.floor(instants)
+        return np.stack([start + k for k in range(math.ceil(self.slices.sweep))])
+
+    def _total(self, approach: FloatArray, ages: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Force [N] and stiffness [N/m] of all pairs when one of them has an age."""
+        force, stiffness = self._law.force(approach, self._lines(self._all_pairs(ages)))
+        return force.sum(axis=0), stiffness.sum(axis=0)
+
+    @cached_property
+    def _coarse(self) -> FloatArray:
+        """Approach at equally spaced instants of the period [m]."""
+        most = max(float(np.abs(end).max()) for end in self.slices.ends(self.slices.breakpoints)) ** 2
+        above = most + self.force / self.pair_stiffness
+        return self._approach_from(np.full(_INSTANTS, above), np.arange(_INSTANTS) / _INSTANTS)
+
+    def _approach(self, ages: FloatArray) -> FloatArray:
+        """Approach δ when a pair has an age [m]."""
+        near = np.interp(ages, np.arange(_INSTANTS) / _INSTANTS, self._coarse, period=1.0)
+        return self._approach_from(near, ages)
+
+    def _approach_from(self, approach: FloatArray, ages: FloatArray) -> FloatArray:
+        """Approach δ from a value that is near [m], by Newton's rule.
+
+        Force grows with δ, and ever faster: from above no step goes too far, and from below only the first one does.
+        """
+        lines = self._lines(self._all_pairs(ages))
+        for _ in range(_STEPS):
+            force, stiffness = (part.sum(axis=0) for part in self._law.force(approach, lines))
+            step = (force - self.force) / np.where(stiffness > 0.0, stiffness, self.pair_stiffness)
+            approach = approach - step
+            if np.all((np.abs(step) <= _SETTLED * approach) & (stiffness > 0.0)):
+                return approach
+        raise RuntimeError(f"approach did not settle: last step {np.abs(step).max():.3g} m")
+
+    # --- events -----------------------------------------------------------------------------------------------
+
+    def _events(self, instants: int) -> FloatArray:
+        """Ages at which what is pressed, or how it is, changes [mesh periods since the first line], ascending."""
+        phases = np.arange(instants) / instants
+        count = math.floor(self.slices.sweep * instants)
+        grid = np.append(np.arange(count + 1) / instants, self.slices.sweep)
+        approach = self._approach(np.append(phases, self.slices.sweep))
+        reach = np.sqrt(np.append(np.resize(approach[:-1], count + 1), approach[-1]))
+        ends, events = self._lines(grid), self._law.events
+        signs = np.sign(np.stack([ends[end] - level * reach for end, level in events]))
+        which, where = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
+        if not which.size:
+            return np.empty(0)
+        chosen = np.array(events, dtype=float)[which]
+
+        def beyond(age: FloatArray, end: FloatArray, level: FloatArray, rising: FloatArray) -> FloatArray:
+            """Of one sign with how far an end is beyond the approach, which need not be found for that."""
+            lines = self._lines(age)
+            s = np.where(end == 1.0, lines.outer, lines.inner)
+            excess = self._total(s**2, age)[0] / self.force - 1.0
+            return np.asarray(rising * np.where(level == 0.0, s, level * np.where(level * s > 0.0, excess, -1.0)))
+
+        return np.sort(crossing(beyond, grid[where], grid[where + 1], *chosen.T, signs[which, where + 1]))
+
+    @cached_property
+    def _mesh(self) -> tuple[float, float, PiecewiseChebyshev]:
+        """Ages at which a pair begins and ends to be pressed, and approach and stiffness over the period from then."""
+        failure: ValueError | None = None
+        for finer in (1, _FINER, _FINER**2):
+            ages = np.unique(np.concatenate([[0.0], self._events(finer * _INSTANTS), [self.slices.sweep]]))
+            middles = 0.5 * (ages[:-1] + ages[1:])
+            force, _ = self._law.force(self._approach(middles), self._lines(middles))
+            pressed = np.flatnonzero(force > 0.0)
+            first, last = float(ages[pressed[0]]), float(ages[pressed[-1] + 1])
+            changes = np.concatenate([ages, self.slices.breakpoints]) - first
+            try:
+                return first, last, self._fit(first, merged([*changes.tolist(), last - first]))
+            except ValueError as error:
+                failure = error
+        raise RuntimeError(f"contact changes at instants that were not found: {failure}")
+
+    def _fit(self, first: float, breakpoints: tuple[float, ...]) -> PiecewiseChebyshev:
+        """Approach [m] and stiffness of all pairs [N/m] against t/T0."""
+        # Both to one size, so that a fit resolves both.
+        units = np.array([self.force / self.pair_stiffness, self.pair_stiffness])
+
+        def values(fraction: FloatArray, piece: int) -> FloatArray:
+            instants = fraction + first
+            approach = self._approach(instants)
+            stiffness = self._law.force(approach, self._lines(self._all_pairs(instants)))[1]
+            return np.stack([approach, stiffness.sum(axis=0)], axis=-1) / units
+
+        return PiecewiseChebyshev.fit(values, breakpoints, tolerance=fit_tolerances(breakpoints)).transformed(
+            np.diag(units)
+        )
+
+    # --- what comes of it -------------------------------------------------------------------------------------
+
+    @property
+    def contact_ratio(self) -> float:
+        """Mesh periods that a pair of teeth is pressed: the effective contact ratio."""
+        return self._mesh[1] - self._mesh[0]
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Fractions of T0, ascending from 0 where a pair begins to be pressed, between which all is smooth."""
+        return tuple(self._mesh[2].breakpoints.tolist())
+
+    def transmission_error(self, fraction: ArrayLike) -> FloatArray:
+        """Loaded transmission error: approach δ of the teeth along the line of action [m].
+
+        Over the pinion's base radius it is the angle by which the pinion is ahead of where rigid gears would have it.
+
+        Parameters
+        ----------
+        fraction : array_like
+            T/T0, from 0 where a pair begins to be pressed; period 1.
+
+        Returns
+        -------
+        ndarray, of the shape of `fraction`
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric or not finite.
+        """
+        return self._mesh[2](finite_array("fraction", fraction))[..., 0]
+
+    def mesh_stiffness(self, fraction: ArrayLike) -> FloatArray:
+        """Stiffness of all pairs in mesh against a small further approach [N/m], arguments as there."""
+        return self._mesh[2](finite_array("fraction", fraction))[..., 1]
+
+    @property
+    def excitation(self) -> PiecewiseChebyshev:
+        """What the loaded transmission error departs from its mean over a mesh period, against t/T0 [m].
+
+        A `transmission_error` of :class:`facegear.floquet.models.Excited`: the springs of the pairs would follow it, if
+        nothing had inertia, without any change of the force.
+        """
+        error = self._mesh[2].transformed(np.array([[1.0, 0.0]]))
+        coefficients = error.coefficients.copy()
+        coefficients[:, 0] -= fourier_series(error, error.breakpoints, 1).mean
+        return PiecewiseChebyshev(error.breakpoints, coefficients)
+
+    def pairs(self, fraction: ArrayLike) -> LoadedPairs:
+        """Find what each pair of teeth carries, and where.
+
+        Parameters
+        ----------
+        fraction : array_like, shape S
+            T/T0, from 0 where a pair begins to be pressed; period 1.
+
+        Returns
+        -------
+        LoadedPairs
+            Rows are pairs by age, the youngest first, as many as there are at most.
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric or not finite.
+        """
+        instants = finite_array("fraction", fraction)
+        start = instants - np.floor(instants)
+        return self.pairs_of_age(np.stack([start + k for k in range(math.ceil(self.contact_ratio))]))
+
+    def pairs_of_age(self, ages: FloatArray) -> LoadedPairs:
+        """As :meth:`pairs`, of pairs that have been pressed for so many mesh periods, (P,) + S."""
+        since_first_line = ages + self._mesh[0]
+        approach = self._approach(since_first_line)
+        lines = self._lines(since_first_line)
+        force, stiffness = self._law.force(approach, lines)
+        # Where a pair is not pressed its place means nothing; that of the unloaded contact is always there.
+        there = force > 0.0
+        s, shares = self._law.pressed(approach, Lines(*(np.where(there, end, 0.0) for end in lines)))
+        radius, angle = self.slices.place(s, since_first_line[..., np.newaxis])
+        return LoadedPairs(
+            force, stiffness, (shares * radius).sum(axis=-1), (shares * angle).sum(axis=-1), approach
+        )
+
+    def pressure(self, fraction: ArrayLike, position: ArrayLike) -> FloatArray:
+        """Load per length of face on slices [N/m], that of each pair; for slices that give way each for itself.
+
+        Parameters
+        ----------
+        fraction : array_like, shape S
+            T/T0, from 0 where a pair begins to be pressed; period 1.
+        position : array_like, shape (m,)
+            U along the shaper's axis [m].
+
+        Returns
+        -------
+        ndarray, shape (P,) + S + (m,)
+            0 where a slice is not pressed, or not in mesh.
+
+        Raises
+        ------
+        TypeError, ValueError
+            Not numeric or not finite, or where the flank has no point.
+        """
+        instants, u = finite_array("fraction", fraction), finite_array("position", position, "m")
+        start = instants - np.floor(instants)
+        ages = np.stack([start + k for k in range(math.ceil(self.contact_ratio))]) + self._mesh[0]
+        inner, outer = (self.slices.position(end)[..., np.newaxis] for end in self.slices.ends(ages))
+        there = (inner <= u) & (u <= outer) & (ages <= self.slices.sweep)[..., np.newaxis]
+        over = self._approach(ages)[..., np.newaxis] - self.slices.contact.gap(u)
+        return np.where(there, np.maximum(over, 0.0), 0.0) * self.pair_stiffness / self.drive.face_width
+
+
+def fit_tolerances(breakpoints: tuple[float, ...]) -> FloatArray:
+    """Relative errors that fits on pieces of a mesh period may have: on short ones they count by the duration."""
+    return np.asarray(_TOLERANCE * np.maximum(1.0, _SHORT / np.diff(breakpoints, append=1.0)))

@@ -1,0 +1,340 @@
+"""Slices of two flanks that touch at a point: how far apart they are, and which of them a pair of teeth has in mesh.
+
+Under load, contact spreads from the point to slices beside it. A slice is what has one local pressure angle q; the gap
+g(q) between the flanks there is the same at every rotation (:meth:`UnloadedContact.gap`). At a rotation, the slices
+that a pair can use lie along a line θs = q + ψ(q) N2/Ns − c, between the edges of the face, the tooth top and the tip of
+the pinion, as contact lines do (:mod:`facegear.geometry.contact_lines`); ψ is 0 between aligned gears.
+
+Slices are named here by s, the square root of their gap, negative inside of the unloaded contact: in s, what is nearer
+than an approach δ is the interval from −√δ to √δ.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.series import ChebyshevSeries
+from facegear.geometry.contact_lines import ContactRegion, crossing, root
+from facegear.geometry.drive import Drive
+from facegear.geometry.point_contact import ALIGNED, Misalignment, UnloadedContact
+from facegear.support.types import FloatArray
+
+# Local pressure angles beyond the edges of the face that are looked at too [rad], and where a flank cannot reach.
+_MARGIN, _FLATTEST, _STEEPEST = 0.05, 1e-3, 1.45
+# Errors of series, relative to the largest value; degrees that they may have.
+_TOLERANCE, _LEAST_DEGREE, _LARGEST_DEGREE = 1e-13, 16, 128
+# Lines that are looked at to see where another edge ends them, parts into which a search divides an interval, and how
+# short that may be in the end [mesh periods].
+_LINES, _SECTIONS, _SAME = 240, 17, 1e-13
+# Which of the lower bounds is what the shaper leaves, where it cuts.
+_CUT = 4
+# Pieces next to a square root: each so many times shorter than the one before it, the last as short as this.
+_GRADING, _SHORTEST = 8.0, 1e-9
+# Gauss–Legendre on [-1, 1]; 1 − t of it on [0, 1].
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+
+
+@dataclass(frozen=True)
+class Slices:
+    """Slices of the flanks of a pinion and of a face gear cut by a shaper with more teeth.
+
+    Parameters
+    ----------
+    drive : Drive
+        Its `shaper_teeth` exceed `pinion_teeth`.
+    misalignment : Misalignment
+        Default: none.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As :class:`UnloadedContact`, or if the gap has another minimum on the flank.
+    """
+
+    drive: Drive
+    misalignment: Misalignment = ALIGNED
+
+    def __post_init__(self) -> None:
+        if self.contact.pressure_angle >= self._range[1] or self.contact.pressure_angle <= self._range[0]:
+            raise ValueError(f"misalignment leaves no contact on the flank; {self.misalignment!r}")
+        angles = np.linspace(*self._range, 97)
+        beyond = self._slope(angles) * (angles - self.contact.pressure_angle) < 0.0
+        if np.any(beyond):
+            raise ValueError(
+                f"misalignment lets the gap narrow again {abs(angles[beyond][0] - self.contact.pressure_angle):.3g} rad "
+                f"beside the contact, where the flanks would touch at a second place; {self.misalignment!r}"
+            )
+
+    @cached_property
+    def contact(self) -> UnloadedContact:
+        """Where the flanks touch without load."""
+        return UnloadedContact(self.drive, self.misalignment)
+
+    @property
+    def _region(self) -> ContactRegion:
+        return self.drive.contact_region
+
+    @cached_property
+    def _range(self) -> tuple[float, float]:
+        """Local pressure angles of the face, and a little more [rad]."""
+        shaper = self.drive.generating
+        rolls = (0.0, shaper.shaper_tip_roll)
+        first = min(self._region.edge_angle(shaper.flank_start, roll) for roll in rolls)
+        last = max(self._region.edge_angle(shaper.outer_radius, roll) for roll in rolls)
+        return max(first - _MARGIN, _FLATTEST), min(last + _MARGIN, _STEEPEST)
+
+    # --- gap -------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _turn(self) -> Callable[[FloatArray], FloatArray]:
+        """ψ(q) N2/Ns, what misalignment adds to the roll angle of a slice [rad]."""
+        ratio = self.drive.generating.speed_ratio
+        return self._series(lambda q: self.contact.turn(q) / ratio)
+
+    @cached_property
+    def _slope(self) -> Chebyshev:
+        """dg/dq = A(q) dθ1/dq [m]: of parallel planes, one normal to each body, only their orientation counts."""
+        direction = self._series(self.contact.direction).deriv()
+        return self._series(lambda q: self.contact.residual(q) * direction(q))
+
+    def _series(self, function: Callable[[FloatArray], FloatArray]) -> Chebyshev:
+        fitted = ChebyshevSeries.resolved(function, *self._range, _LEAST_DEGREE, _LARGEST_DEGREE, _TOLERANCE)
+        return Chebyshev(fitted.coefficients, domain=self._range)
+
+    def root_gap(self, q: ArrayLike) -> FloatArray:
+        """Square root s of the gap of slices [√m], negative inside of the unloaded contact.
+
+        s = (q − q0) √h, and h = ∫(1 − t) g''(q0 + t(q − q0)) dt, in which nothing cancels.
+        """
+        away = np.asarray(q, dtype=float) - self.contact.pressure_angle
+        t = 0.5 * (_NODES + 1.0)
+        bend = self._slope.deriv()(self.contact.pressure_angle + away[..., np.newaxis] * t)
+        return np.asarray(away * np.sqrt(bend @ (0.5 * _WEIGHTS * (1.0 - t))), dtype=float)
+
+    @cached_property
+    def pressure_angle(self) -> Chebyshev:
+        """Local pressure angle q of the slice s [rad]."""
+        low, high = self.root_gap(np.array(self._range)).tolist()
+
+        def angle(s: FloatArray) -> FloatArray:
+            return crossing(lambda q, wanted: self.root_gap(q) - wanted, *self._range, s)
+
+        fitted = ChebyshevSeries.resolved(angle, low, high, _LEAST_DEGREE, _LARGEST_DEGREE, _TOLERANCE)
+        return Chebyshev(fitted.coefficients, domain=[low, high])
+
+    @cached_property
+    def position(self) -> Chebyshev:
+        """Coordinate u along the shaper's axis of the slice s [m]."""
+        low, high = self.pressure_angle.domain.tolist()
+        fitted = ChebyshevSeries.resolved(
+            lambda s: self._region.position(self.pressure_angle(s)),
+            low,
+            high,
+            _LEAST_DEGREE,
+            _LARGEST_DEGREE,
+            _TOLERANCE,
+        )
+        return Chebyshev(fitted.coefficients, domain=[low, high])
+
+    def distance(self, s: FloatArray) -> FloatArray:
+        """Distance u − u0 of slices from the unloaded contact [m]."""
+        return self.distance_and_area(s)[0]
+
+    def distance_and_area(self, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Distance of slices from the unloaded contact [m], and ∫ g du as far as there [m²]."""
+        moments = self._moments(s)
+        return s * moments[..., 0], s**3 * moments[..., 1]
+
+    @cached_property
+    def _moments(self) -> ChebyshevSeries:
+        """∫ u'(ts) dt and ∫ t² u'(ts) dt over t from 0 to 1: differences without cancellation next to s = 0."""
+        slope, t = self.position.deriv(), 0.5 * (_NODES + 1.0)
+        weights = 0.5 * _WEIGHTS * np.stack([np.ones_like(t), t**2])
+        low, high = self.position.domain.tolist()
+        return ChebyshevSeries.resolved(
+            lambda s: slope(s[:, np.newaxis] * t) @ weights.T,
+            low,
+            high,
+            _LEAST_DEGREE,
+            _LARGEST_DEGREE,
+            _TOLERANCE,
+        )
+
+    # --- lines -----------------------------------------------------------------------------------------------
+
+    @property
+    def pitch(self) -> float:
+        """By how much c falls in a mesh period [rad]."""
+        return 2.0 * math.pi / self.drive.generating.pinion_teeth
+
+    def roll(self, q: FloatArray, c: FloatArray) -> FloatArray:
+        """Roll angle θs at which a slice is in mesh at a rotation c [rad]."""
+        return np.asarray(q + self._turn(q) - c, dtype=float)
+
+    def _bounds(self, c: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Local pressure angles that bound lines from below, (4, ...), and from above, (3, ...) [rad].
+
+        Below: involutes of shaper and pinion begin, tooth top of the gear, inner edge or what the shaper leaves of
+        it; above: tips of shaper and pinion, outer edge.
+        """
+        shaper, region, contact = self.drive.generating, self._region, self.contact
+        lines = np.asarray(c, dtype=float)
+        least, most = (np.full(lines.shape, end) for end in self._range)
+
+        def own_roll(q: FloatArray, line: FloatArray) -> FloatArray:
+            return contact.own_roll(q, self.roll(q, line))
+
+        def at_roll(roll: float) -> FloatArray:
+            return crossing(lambda q, line: self.roll(q, line) - roll, least, most, lines)
+
+        base, own_base = at_roll(0.0), crossing(own_roll, least, most, lines)
+        first = np.maximum(base, own_base)
+        tip = at_roll(shaper.shaper_tip_roll)
+        own_tip = crossing(
+            lambda q, line: own_roll(q, line) - self.drive.pinion_tip_roll, least, most, lines
+        )
+
+        def above(q: FloatArray, line: FloatArray) -> FloatArray:
+            return np.asarray(region.depth(q, self.roll(q, line)) - shaper.tooth_top_distance)
+
+        def outside(q: FloatArray, line: FloatArray, radius: FloatArray) -> FloatArray:
+            return np.asarray(region.radial_position(q, self.roll(q, line)) - radius)
+
+        top = crossing(above, first, most, lines)
+        inner = crossing(outside, first, most, lines, shaper.flank_start)
+        outer = crossing(outside, first, most, lines, shaper.outer_radius)
+        lower = [base, own_base, top, inner]
+        if self.drive.shaft_angle > 0.5 * math.pi:
+            ends = np.maximum.reduce(lower), np.minimum.reduce([tip, own_tip, outer])
+
+            def clear(q: FloatArray, line: FloatArray) -> FloatArray:
+                return region.shaper.clearance(q, self.roll(q, line))
+
+            # A little beyond, so that lines of which nothing is left are told from those that end.
+            lower.append(crossing(clear, ends[0], np.minimum(np.maximum(*ends) + _MARGIN, most), lines))
+        return np.stack(lower), np.stack([tip, own_tip, outer])
+
+    def _width(self, c: float) -> float:
+        lower, upper = self._bounds(c)
+        return float(upper.min() - lower.max())
+
+    @cached_property
+    def limits(self) -> tuple[float, float]:
+        """C of the first line that lies on both flanks, and of the last, which is smaller [rad]."""
+        middle = float(self.contact.pressure_angle + self._turn(self.contact.pressure_angle))
+        middle -= 0.5 * float(sum(self.contact.rolls))
+        ends = []
+        for sense in (1.0, -1.0):
+            step = self.pitch
+            while self._width(middle + sense * step) > 0.0:
+                step += self.pitch
+            ends.append(root(self._width, middle + sense * (step - self.pitch), middle + sense * step))
+        return ends[0], ends[1]
+
+    @property
+    def sweep(self) -> float:
+        """Mesh periods from the first line to the last."""
+        return (self.limits[0] - self.limits[1]) / self.pitch
+
+    @cached_property
+    def kinks(self) -> tuple[float, ...]:
+        """Ages of lines at which another edge ends them [mesh periods], ascending."""
+        ages = np.linspace(0.0, self.sweep, _LINES + 1)[1:-1]
+        found = []
+        for side in (0, 1):
+            labels = self._edges(ages, side)
+            for k in np.flatnonzero(np.diff(labels)):
+                low, high, label = float(ages[k]), float(ages[k + 1]), labels[k]
+                while high - low > _SAME:
+                    between = np.linspace(low, high, _SECTIONS)
+                    first = int(np.argmax(self._edges(between, side) != label))
+                    low, high = float(between[first - 1]), float(between[first])
+                found.append(high)
+        return tuple(sorted(found))
+
+    def _edges(self, ages: FloatArray, side: int) -> NDArray[np.int64]:
+        """Which of the :meth:`_bounds` end lines at one side; of the shaper's cut also which part of the shaper."""
+        lines = self._line(ages)
+        bounds = self._bounds(lines)[side]
+        labels = np.argmin(bounds, axis=0) if side else np.argmax(bounds, axis=0)
+        cut = (labels == _CUT) & (side == 0)
+        if np.any(cut):
+            q = bounds[_CUT][cut]
+            labels[cut] += self._region.shaper.cut_by(q, self.roll(q, lines[cut]))[0]
+        return np.asarray(labels)
+
+    def _line(self, age: FloatArray) -> FloatArray:
+        """C of a line so many mesh periods after the first [rad]."""
+        return np.asarray(self.limits[0] - age * self.pitch)
+
+    @cached_property
+    def _ends(self) -> PiecewiseChebyshev:
+        """Both ends of a line against its age over `_whole`, as s [√m]; beyond the last line those of the last."""
+        edges = np.array([0.0, *self.kinks, self.sweep]) / self._whole
+        tolerances = np.full(edges.shape, 1e-11 if self._region.is_cut else 1e-12)
+        if self.few_teeth:
+            # An end comes down to a base circle with the square root of time: pieces shrink towards such kinks.
+            edges = np.unique([*edges, *_graded(edges)])
+            tolerances = 1e-12 * np.maximum(1.0, 1e-3 / np.diff(edges, append=1.0))
+
+        def ends(fraction: FloatArray, piece: int) -> FloatArray:
+            lower, upper = self._bounds(self._line(np.minimum(fraction * self._whole, self.sweep)))
+            return self.root_gap(np.stack([lower.max(axis=0), upper.min(axis=0)], axis=-1))
+
+        return PiecewiseChebyshev.fit(ends, edges, tolerance=tolerances)
+
+    @property
+    def _whole(self) -> float:
+        """What the ages of lines are counted by [mesh periods]: the last is not to be taken for the next first."""
+        return self.sweep + 1.0
+
+    @property
+    def breakpoints(self) -> FloatArray:
+        """Ages of lines between which their ends are smooth [mesh periods], ascending from 0."""
+        return np.asarray(self._ends.breakpoints[:-1] * self._whole)
+
+    @property
+    def few_teeth(self) -> bool:
+        """Whether lines end where an involute begins: there their ends have no finite speed."""
+        return self.drive.generating.tooth_top_distance < max(
+            self.drive.base_radius + self.drive.axis_offset, self.drive.generating.base_radius
+        )
+
+    def ends(self, age: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Slices at the two ends of lines.
+
+        Parameters
+        ----------
+        age : array_like
+            Mesh periods since the first line, from 0 to `sweep`.
+
+        Returns
+        -------
+        inner, outer : ndarray, shape of `age`
+            As s [√m].
+        """
+        ends = self._ends(np.clip(np.asarray(age, dtype=float), 0.0, self.sweep) / self._whole)
+        return ends[..., 0], ends[..., 1]
+
+    def place(self, s: FloatArray, age: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Where slices are in mesh: radius r [m] and angle θ about the gear's axis [rad], from the pinion's."""
+        q = self.pressure_angle(s)
+        x, y, _ = np.moveaxis(self._region.point(q, self.roll(q, self._line(age))), -1, 0)
+        return np.hypot(x, y), np.arctan2(x, -y)
+
+
+def _graded(edges: FloatArray) -> list[float]:
+    """Instants that come near each edge from both sides, each distance an eighth of the one before."""
+    widths = np.diff(edges)
+    steps = 0.45 / _GRADING ** np.arange(round(math.log(1.0 / _SHORTEST, _GRADING)))
+    after = (edges[:-1, np.newaxis] + widths[:, np.newaxis] * steps).ravel()
+    before = (edges[1:, np.newaxis] - widths[:, np.newaxis] * steps).ravel()
+    return [*after.tolist(), *before.tolist()]
