@@ -43,15 +43,19 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 class Lines(NamedTuple):
-    """What a pair of teeth has in mesh at instants of shape S, as slices s [√m]; nothing where both are one.
+    """What a pair of teeth has in mesh at instants of shape S.
 
     Attributes
     ----------
     inner, outer : ndarray, shape S
+        Ends as slices s [√m]; nothing is in mesh where both are one.
+    age : ndarray, shape S
+        Since the first line on both flanks [mesh periods].
     """
 
     inner: FloatArray
     outer: FloatArray
+    age: FloatArray
 
 
 @dataclass(frozen=True)
@@ -250,7 +254,7 @@ class LoadedContact:
         """Lines of pairs so many mesh periods after the first line on both flanks; empty before it and after."""
         inner, outer = self.slices.ends(ages)
         beyond = (ages < 0.0) | (ages > self.slices.sweep)
-        return Lines(np.where(beyond, 0.0, inner), np.where(beyond, 0.0, outer))
+        return Lines(np.where(beyond, 0.0, inner), np.where(beyond, 0.0, outer), ages)
 
     def _all_pairs(self, instants: FloatArray) -> FloatArray:
         """Ages since the first line of all pairs that may be in mesh, shape (K,) + S."""
@@ -424,7 +428,8 @@ class LoadedContact:
         force, stiffness = self._law.force(approach, lines)
         # Where a pair is not pressed its place means nothing; that of the unloaded contact is always there.
         there = force > 0.0
-        s, shares = self._law.pressed(approach, Lines(*(np.where(there, end, 0.0) for end in lines)))
+        ends = (np.where(there, end, 0.0) for end in (lines.inner, lines.outer))
+        s, shares = self._law.pressed(approach, Lines(*ends, lines.age))
         radius, angle = self.slices.place(s, since_first_line[..., np.newaxis])
         return LoadedPairs(
             force, stiffness, (shares * radius).sum(axis=-1), (shares * angle).sum(axis=-1), approach
