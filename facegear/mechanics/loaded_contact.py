@@ -2,8 +2,8 @@
 
 Teeth press where their approach δ along the normal exceeds the gap of their slices (:mod:`facegear.mechanics.slices`).
 All pairs in mesh have one approach, as both gears turn as rigid bodies; δ follows from equilibrium with the torque at
-every instant. Where it exceeds all gaps, contact is along whole lines, as between equal pinion and shaper; as it goes to
-0, at the point of the unloaded contact.
+every instant. Where it exceeds all gaps, contact is along whole lines, as with a shaper of the pinion's teeth; as it
+goes to 0, at the point of the unloaded contact.
 
 How a tooth gives way is a `Compliance`. Two of them bound the truth: slices of a Winkler bedding, each for itself
 (`slice`), and rigid teeth on one spring a pair (`pair`). A tooth between them, an elastic plate, resists more where its
@@ -78,13 +78,19 @@ class Compliance(ABC):
 
     @abstractmethod
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """Ends of the contact as slices, and slices with the shares of the load that they have.
+        """Sample what is pressed: slices, with the shares of the load that they have.
 
         Returns
         -------
         slices, shares : ndarray, shape S + (m,)
             s [√m], and weights that add up to 1 [-].
         """
+
+    def line_load(self, approach: FloatArray, s: FloatArray) -> FloatArray:
+        """Load per length of face [N/m] on slices at an approach [m]; see :meth:`LoadedContact.line_load`."""
+        raise ValueError(
+            "compliance must be one of slices for a load per length to exist, got that of rigid teeth on one spring"
+        )
 
     events: ClassVar[tuple[tuple[int, int], ...]]
     """What is pressed, or how, changes where an end of a line (0 inner, 1 outer) passes so many times √δ."""
@@ -114,6 +120,10 @@ class SliceCompliance(Compliance):
         length = distance[1] - distance[0]
         force = approach * length - (area[1] - area[0])
         return self._foundation * force, self._foundation * length
+
+    def line_load(self, approach: FloatArray, s: FloatArray) -> FloatArray:
+        """K_m/L (δ − g) where that is positive."""
+        return self._foundation * np.maximum(approach - s**2, 0.0)
 
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """As the gap leaves it, on Gauss–Legendre nodes."""
@@ -362,7 +372,7 @@ class LoadedContact:
         return tuple(self._mesh[2].breakpoints.tolist())
 
     def transmission_error(self, fraction: ArrayLike) -> FloatArray:
-        """Loaded transmission error: approach δ of the teeth along the line of action [m].
+        """Evaluate the loaded transmission error: approach δ of the teeth along the line of action [m].
 
         Over the pinion's base radius it is the angle by which the pinion is ahead of where rigid gears would have it.
 
@@ -435,33 +445,28 @@ class LoadedContact:
             force, stiffness, (shares * radius).sum(axis=-1), (shares * angle).sum(axis=-1), approach
         )
 
-    def pressure(self, fraction: ArrayLike, position: ArrayLike) -> FloatArray:
-        """Load per length of face on slices [N/m], that of each pair; for slices that give way each for itself.
+    def line_load(self, age: FloatArray, s: FloatArray) -> FloatArray:
+        """Load per length of face on slices of a line [N/m].
 
         Parameters
         ----------
-        fraction : array_like, shape S
-            T/T0, from 0 where a pair begins to be pressed; period 1.
-        position : array_like, shape (m,)
-            U along the shaper's axis [m].
+        age : array, shape (k,)
+            Of lines, since the first on both flanks [mesh periods], as `slices.breakpoints` count it.
+        s : array, shape (k, m)
+            Slices of each line [√m] (:class:`Slices`).
 
         Returns
         -------
-        ndarray, shape (P,) + S + (m,)
-            0 where a slice is not pressed, or not in mesh.
+        array, shape (k, m)
+            0 where a slice is not pressed.
 
         Raises
         ------
-        TypeError, ValueError
-            Not numeric or not finite, or where the flank has no point.
+        ValueError
+            If teeth do not give way slice by slice.
         """
-        instants, u = finite_array("fraction", fraction), finite_array("position", position, "m")
-        start = instants - np.floor(instants)
-        ages = np.stack([start + k for k in range(math.ceil(self.contact_ratio))]) + self._mesh[0]
-        inner, outer = (self.slices.position(end)[..., np.newaxis] for end in self.slices.ends(ages))
-        there = (inner <= u) & (u <= outer) & (ages <= self.slices.sweep)[..., np.newaxis]
-        over = self._approach(ages)[..., np.newaxis] - self.slices.contact.gap(u)
-        return np.where(there, np.maximum(over, 0.0), 0.0) * self.pair_stiffness / self.drive.face_width
+        approach = self._approach(np.asarray(age, dtype=float))[:, np.newaxis]
+        return self._law.line_load(approach, np.asarray(s, dtype=float))
 
 
 def fit_tolerances(breakpoints: tuple[float, ...]) -> FloatArray:

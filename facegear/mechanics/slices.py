@@ -2,8 +2,8 @@
 
 Under load, contact spreads from the point to slices beside it. A slice is what has one local pressure angle q; the gap
 g(q) between the flanks there is the same at every rotation (:meth:`UnloadedContact.gap`). At a rotation, the slices
-that a pair can use lie along a line θs = q + ψ(q) N2/Ns − c, between the edges of the face, the tooth top and the tip of
-the pinion, as contact lines do (:mod:`facegear.geometry.contact_lines`); ψ is 0 between aligned gears.
+that a pair can use lie along a line θs = q + ψ(q) N2/Ns − c, between the edges of the face, the tooth top and the
+pinion's tip, as contact lines do (:mod:`facegear.geometry.contact_lines`); ψ is 0 between aligned gears.
 
 Slices are named here by s, the square root of their gap, negative inside of the unloaded contact: in s, what is nearer
 than an approach δ is the interval from −√δ to √δ.
@@ -68,9 +68,10 @@ class Slices:
         angles = np.linspace(*self._range, 97)
         beyond = self._slope(angles) * (angles - self.contact.pressure_angle) < 0.0
         if np.any(beyond):
+            away = abs(float(angles[beyond][0]) - self.contact.pressure_angle)
             raise ValueError(
-                f"misalignment lets the gap narrow again {abs(angles[beyond][0] - self.contact.pressure_angle):.3g} rad "
-                f"beside the contact, where the flanks would touch at a second place; {self.misalignment!r}"
+                f"misalignment lets the gap narrow again {away:.3g} rad beside the contact, where flanks would touch at "
+                f"a second place; {self.misalignment!r}"
             )
 
     @cached_property

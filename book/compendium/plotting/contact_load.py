@@ -1,0 +1,191 @@
+"""Figures of the chapter on contact under load."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+
+from facegear.plotting.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    GROWTH,
+    INK,
+    ORANGE,
+    PURPLE,
+    STEEL,
+    VERMILION,
+    draw_border,
+    draw_unstable,
+    label_line,
+    panels,
+    styled,
+)
+
+_MM, _UM = 1e3, 1e6
+_LAW = {"slice": "slices, each for itself", "pair": "rigid pairs"}
+_DASH = {"slice": "-", "pair": "--"}
+
+
+@styled
+def contact_pattern(data: xr.Dataset, face: tuple[float, float]) -> Figure:
+    """Place of the contact and marking band against each error; `face` is its inner and outer end [m]."""
+    names = data.error_name.values.tolist()
+    titles = {
+        "offset": ("offset ΔE [µm]", _UM),
+        "gear_axial": ("gear closer [µm]", _UM),
+        "shaft_angle": ("shafts opened [mrad]", 1e3),
+    }
+    figure, axes = panels(1, len(names), height=3.4, sharey=True)
+    for ax, name, row in zip(axes, names, range(len(names)), strict=True):
+        one, (label, scale) = data.isel(error=row), titles[name]
+        size = one["size"] * scale
+        ax.axhspan(face[0] * _MM, face[1] * _MM, color=STEEL, alpha=0.35, linewidth=0)
+        ax.fill_between(size, one.inner * _MM, one.outer * _MM, color=BLUE, alpha=0.35, linewidth=0)
+        ax.plot(size, one.position * _MM, color=INK)
+        ax.set(xlabel=label)
+    axes[0].set_ylabel("along the face, u [mm]")
+    return figure
+
+
+@styled
+def effective_contact_ratio(data: xr.Dataset, tregold: float, line: float) -> Figure:
+    """Effective contact ratio against torque, between Tregold's and that of line contact."""
+    figure, (ax,) = panels(height=4.0)
+    for place, law in enumerate(data.law_name.values.tolist()):
+        for more, colour in zip(data.more.values.tolist(), (BLUE, GREEN, ORANGE), strict=True):
+            ratio = data.contact_ratio.isel(law=place).sel(more=more)
+            label = f"shaper with {more} more" if place == 0 else None
+            ax.plot(data.torque, ratio, _DASH[law], color=colour, label=label)
+    ax.axhline(tregold, color=GREY, linewidth=1.0)
+    ax.axhline(line, color=GREY, linewidth=1.0)
+    ax.set(xscale="log", xlabel="torque at the pinion [N m]", ylabel="effective contact ratio")
+    label_line(ax, "Tregold's, and that of the unloaded point", (float(data.torque[15]), tregold), (0.0, 12.0))
+    label_line(ax, "line contact, shaper as the pinion", (float(data.torque[2]), line), (0.0, -18.0))
+    ax.plot([], [], "-", color=INK, label=_LAW["slice"])
+    ax.plot([], [], "--", color=INK, label=_LAW["pair"])
+    ax.legend(loc="center left")
+    return figure
+
+
+@styled
+def mesh_period(data: xr.Dataset) -> Figure:
+    """Mesh stiffness and transmission error over a mesh period, for both laws."""
+    figure, axes = panels(2, 2, height=5.4, sharex=True, sharey="row")
+    colours = (BLUE, GREEN, ORANGE, VERMILION)
+    for column, law in enumerate(data.law_name.values.tolist()):
+        top, bottom = axes[column], axes[2 + column]
+        for torque, colour in zip(data.torque.values.tolist(), colours, strict=False):
+            one = data.isel(law=column).sel(torque=torque)
+            top.plot(data.time, one.stiffness, color=colour, label=f"{torque:g} N m")
+            bottom.plot(data.time, (one.approach - one.approach.mean()) * _UM, color=colour)
+        top.set_title(_LAW[law])
+        bottom.set_xlabel("$t/T_0$")
+    axes[0].set_ylabel("mesh stiffness over $k_m$")
+    axes[2].set_ylabel("transmission error less mean [µm]")
+    axes[1].legend(loc="best")
+    return figure
+
+
+@styled
+def load_sharing(data: xr.Dataset, torque: float) -> Figure:
+    """Share of the load that one pair has, from its first to its last contact, for both laws."""
+    figure, (ax,) = panels(height=3.2)
+    for column, name in enumerate(data.law_name.values.tolist()):
+        one = data.share.isel(law=column).sel(torque=torque)
+        age = np.concatenate([data.time.values + pair for pair in data.pair.values])
+        share = one.transpose("pair", "time").values.ravel()
+        ax.plot(age, np.where(share > 0.0, share, np.nan), _DASH[name], label=_LAW[name])
+    ax.set(xlabel="mesh periods since a pair was first pressed", ylabel="share of the load", ylim=(0.0, 1.05))
+    ax.legend()
+    return figure
+
+
+def _draw_pressure(ax: Any, data: xr.Dataset, torque: float, largest: float) -> QuadMesh:
+    pressure = data.pressure.sel(torque=torque).values
+    mesh: QuadMesh = ax.pcolormesh(
+        data.position.values * _MM,
+        data.height.values * _MM,
+        np.ma.masked_less_equal(pressure * 1e-3, 0.0),
+        cmap=GROWTH,
+        vmin=0.0,
+        vmax=largest * 1e-3,
+        shading="gouraud",
+        rasterized=True,
+    )
+    for line in ({"point": 0}, {"point": -1}, {"age": 0}, {"age": -1}):
+        ax.plot(data.position[line] * _MM, data.height[line] * _MM, color=GREY, linewidth=0.8)
+    ax.set(xlabel="along the face, u [mm]", ylabel="below the tooth top [mm]")
+    ax.invert_yaxis()
+    ax.grid(False)
+    return mesh
+
+
+@styled
+def pressed_flank(data: xr.Dataset, torque: float) -> Figure:
+    """Load per length on the flank while it goes through the mesh, under one torque."""
+    figure, (ax,) = panels(height=3.4)
+    largest = float(data.pressure.sel(torque=torque).max())
+    mesh = _draw_pressure(ax, data, torque, largest)
+    figure.colorbar(mesh, ax=ax, label="load per length [N/mm]")
+    ax.set_title(f"{torque:g} N m at the pinion")
+    return figure
+
+
+@styled
+def unstable_shares(data: xr.Dataset, torques: Sequence[float], rated: float, cases: Sequence[str]) -> Figure:
+    """Unstable share against torque, from point to line contact, with the dissertation's combination beside it."""
+    figure, axes = panels(1, len(cases), height=4.0, sharey=True)
+    names = data.contact_name.values.tolist()
+    for ax, case, title in zip(axes, range(len(cases)), cases, strict=True):
+        share = 100.0 * data.unstable.isel(drive=case)
+        for law, colour in (("slice", BLUE), ("pair", GREEN)):
+            rows = [names.index(f"{law} {torque:g}") for torque in torques]
+            ax.plot(torques, share.values[rows], _DASH[law], color=colour, marker="o", markersize=3, label=_LAW[law])
+        low, high = torques[0], torques[-1]
+        for name, marker, colour, place, label in (
+            ("as printed", "*", VERMILION, (low * high) ** 0.5, "as printed: sweep of lines, Tregold's clock"),
+            ("point", "o", ORANGE, low / 2.0, "point contact, no load"),
+            ("line", "s", PURPLE, high * 2.0, "line contact, its own clock"),
+        ):
+            value = float(share[names.index(name)])
+            ax.plot([place], [value], marker, color=colour, markersize=12 if marker == "*" else 7, label=label)
+        ax.axvline(rated, color=GREY, linewidth=0.8, linestyle=":")
+        ax.set(xscale="log", xlabel="torque at the pinion [N m]", title=title)
+    axes[0].set_ylabel("unstable cells of the map [%]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    return figure
+
+
+@styled
+def torque_maps(maps: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
+    """Growth rate over speed and torque."""
+    figure, axes = panels(1, len(maps), height=3.8, sharey=True)
+    largest = max(float(data.growth_rate.max()) for data in maps)
+    for ax, data, title in zip(axes, maps, titles, strict=True):
+        growth = data.growth_rate.values
+        mesh = draw_unstable(ax, data.speed, data.torque, growth, max(largest, 1e-3))
+        draw_border(ax, data.speed, data.torque, growth)
+        ax.set(yscale="log", xlabel="speed of the face gear [rpm]", title=title)
+    axes[0].set_ylabel("torque at the pinion [N m]")
+    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]")
+    return figure
+
+
+@styled
+def dynamic_load(data: xr.Dataset) -> Figure:
+    """Dynamic force over speed, one line a torque."""
+    figure, (ax,) = panels(height=3.6)
+    for torque in data.torque.values.tolist():
+        ax.plot(data.speed, 100.0 * data.dynamic_force.sel(torque=torque), label=f"{torque:g} N m")
+    ax.set(
+        yscale="log", xlabel="speed of the face gear [rpm]", ylabel="dynamic force of a pair, rms [% of static]"
+    )
+    ax.legend()
+    return figure
