@@ -25,6 +25,10 @@ from .maps.tracing import tongues as tongues
 from .mechanics.contact import Contact as Contact
 from .mechanics.edge_stiffness import DrivingForce as DrivingForce
 from .mechanics.inplane import EdgeLoadStress as EdgeLoadStress
+from .mechanics.loaded_contact import LoadedContact as LoadedContact
+from .mechanics.paths import line_contact as line_contact
+from .mechanics.paths import loaded_contact as loaded_contact
+from .mechanics.paths import point_contact as point_contact
 from .mechanics.plate import Body as Body
 from .mechanics.torsional import Gearbox as Gearbox
 from .mechanics.torsional import Torsional as Torsional
@@ -46,6 +50,7 @@ __all__ = [
     "EdgeLoadStress",
     "Excited",
     "Gearbox",
+    "LoadedContact",
     "MeshLoad",
     "Misalignment",
     "PeriodicSystem",
@@ -59,8 +64,11 @@ __all__ = [
     "error_estimate",
     "frequency_response",
     "growth_rate",
+    "line_contact",
+    "loaded_contact",
     "multipliers",
     "phase_split",
+    "point_contact",
     "rad_per_s",
     "read_drive_file",
     "replace_parameter",

@@ -67,7 +67,7 @@ class Contact:
     (2,)
     """
 
-    path: Callable[[Drive, float | None], TimedPairs] = ContactPath
+    path: Callable[..., TimedPairs] = ContactPath
     sharing: Sharing = "centroid"
     contact_ratio: float | None = None
     rate: Rate = "frozen"
@@ -224,7 +224,7 @@ class LoadPlace:
         )
 
 
-_Path = Callable[[Drive, float | None], TimedPairs]
+_Path = Callable[..., TimedPairs]
 
 
 @lru_cache(maxsize=256)

@@ -28,7 +28,7 @@ from facegear.geometry.kinematics import merged
 from facegear.geometry.point_contact import ALIGNED, Misalignment
 from facegear.mechanics.slices import Slices
 from facegear.mechanics.torsional import mesh_stiffness
-from facegear.support.parameters import STEEL, Material, finite_array, keep, one_of, positive
+from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
 from facegear.support.types import FloatArray
 
 # Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.
@@ -123,7 +123,7 @@ class SliceCompliance(Compliance):
 
     def line_load(self, approach: FloatArray, s: FloatArray) -> FloatArray:
         """K_m/L (δ − g) where that is positive."""
-        return self._foundation * np.maximum(approach - s**2, 0.0)
+        return np.asarray(self._foundation * np.maximum(approach - s**2, 0.0), dtype=float)
 
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """As the gap leaves it, on Gauss–Legendre nodes."""
@@ -133,7 +133,8 @@ class SliceCompliance(Compliance):
         shares = np.maximum((reach - s) * (reach + s), 0.0) * self.slices.position.deriv()(s) * _WEIGHTS
         whole = shares.sum(axis=-1, keepdims=True)
         # A pair that just touches does so at one place.
-        return s, np.where(whole > 0.0, shares, _WEIGHTS) / np.where(whole > 0.0, whole, 2.0)
+        shares = np.where(whole > 0.0, shares, _WEIGHTS) / np.where(whole > 0.0, whole, 2.0)
+        return s, np.asarray(shares, dtype=float)
 
 
 @dataclass(frozen=True)
@@ -144,13 +145,13 @@ class PairCompliance(Compliance):
     events = ((0, 1), (1, -1), (0, 0), (1, 0))
 
     def _nearest(self, lines: Lines) -> FloatArray:
-        return np.clip(0.0, lines.inner, lines.outer)
+        return np.asarray(np.clip(0.0, lines.inner, lines.outer), dtype=float)
 
     def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """k_m (δ − g) at the least gap."""
         pressed = approach - self._nearest(lines) ** 2
         there = (pressed > 0.0) & (lines.inner < lines.outer)
-        return self.pair_stiffness * np.where(there, pressed, 0.0), self.pair_stiffness * there
+        return self.pair_stiffness * np.where(there, pressed, 0.0), self.pair_stiffness * there.astype(float)
 
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """All at one slice."""
@@ -182,6 +183,23 @@ class LoadedPairs(NamedTuple):
 
 COMPLIANCES: dict[str, type[Compliance]] = {"slice": SliceCompliance, "pair": PairCompliance}
 """Laws of compliance by name."""
+
+
+def checked_torque(torque: float) -> float:
+    """Return a torque at the pinion that presses teeth [N m].
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is not a number greater than 0.
+    """
+    number = finite("torque", torque, "N m")
+    if number <= 0.0:
+        raise ValueError(
+            f"torque must be greater than 0 N m, got {number:g} N m: without load UnloadedContact has the contact, and a "
+            "torque the other way presses the other flank, for which an offset counts with the opposite sign"
+        )
+    return number
 
 
 @lru_cache(maxsize=64)
@@ -235,7 +253,7 @@ class LoadedContact:
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
         one_of("compliance", self.compliance, tuple(COMPLIANCES))
-        keep(self, torque=positive("torque", self.torque, "N m"))
+        keep(self, torque=checked_torque(self.torque))
         mesh_stiffness(self.drive, self.correction_factor, self.material)
         _ = self.slices
 
@@ -323,7 +341,9 @@ class LoadedContact:
             lines = self._lines(age)
             s = np.where(end == 1.0, lines.outer, lines.inner)
             excess = self._total(s**2, age)[0] / self.force - 1.0
-            return np.asarray(rising * np.where(level == 0.0, s, level * np.where(level * s > 0.0, excess, -1.0)))
+            return np.asarray(
+                rising * np.where(level == 0.0, s, level * np.where(level * s > 0.0, excess, -1.0))
+            )
 
         return np.sort(crossing(beyond, grid[where], grid[where + 1], *chosen.T, signs[which, where + 1]))
 
@@ -353,7 +373,7 @@ class LoadedContact:
             instants = fraction + first
             approach = self._approach(instants)
             stiffness = self._law.force(approach, self._lines(self._all_pairs(instants)))[1]
-            return np.stack([approach, stiffness.sum(axis=0)], axis=-1) / units
+            return np.asarray(np.stack([approach, stiffness.sum(axis=0)], axis=-1) / units)
 
         return PiecewiseChebyshev.fit(values, breakpoints, tolerance=fit_tolerances(breakpoints)).transformed(
             np.diag(units)
@@ -438,8 +458,8 @@ class LoadedContact:
         force, stiffness = self._law.force(approach, lines)
         # Where a pair is not pressed its place means nothing; that of the unloaded contact is always there.
         there = force > 0.0
-        ends = (np.where(there, end, 0.0) for end in (lines.inner, lines.outer))
-        s, shares = self._law.pressed(approach, Lines(*ends, lines.age))
+        inner, outer = (np.where(there, end, 0.0) for end in (lines.inner, lines.outer))
+        s, shares = self._law.pressed(approach, Lines(inner, outer, lines.age))
         radius, angle = self.slices.place(s, since_first_line[..., np.newaxis])
         return LoadedPairs(
             force, stiffness, (shares * radius).sum(axis=-1), (shares * angle).sum(axis=-1), approach

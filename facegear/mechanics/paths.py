@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, PairStates, TimedPairs
 from facegear.geometry.point_contact import ALIGNED, Misalignment, PointPath, UnloadedContact
-from facegear.mechanics.loaded_contact import COMPLIANCES, LoadedContact, fit_tolerances
-from facegear.support.parameters import STEEL, Material, one_of, positive
+from facegear.mechanics.loaded_contact import COMPLIANCES, LoadedContact, checked_torque, fit_tolerances
+from facegear.support.parameters import STEEL, Material, one_of
 from facegear.support.types import FloatArray
 
 
@@ -102,7 +102,7 @@ class loaded_contact:  # noqa: N801 (one of three paths, the other two are funct
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        positive("torque", self.torque, "N m")
+        checked_torque(self.torque)
         one_of("compliance", self.compliance, tuple(COMPLIANCES))
 
     def of(self, drive: Drive) -> LoadedContact:
@@ -149,7 +149,7 @@ class LoadedPath(TimedPairs):
     has_lengths: ClassVar[bool] = True
 
     @property
-    def breakpoints(self) -> tuple[float, ...]:  # type: ignore[override]
+    def breakpoints(self) -> tuple[float, ...]:
         """Fractions of T0 between which all is smooth, ascending from 0, where a pair begins to be pressed."""
         return self.contact.breakpoints
 

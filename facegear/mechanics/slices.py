@@ -199,9 +199,7 @@ class Slices:
         base, own_base = at_roll(0.0), crossing(own_roll, least, most, lines)
         first = np.maximum(base, own_base)
         tip = at_roll(shaper.shaper_tip_roll)
-        own_tip = crossing(
-            lambda q, line: own_roll(q, line) - self.drive.pinion_tip_roll, least, most, lines
-        )
+        own_tip = crossing(lambda q, line: own_roll(q, line) - self.drive.pinion_tip_roll, least, most, lines)
 
         def above(q: FloatArray, line: FloatArray) -> FloatArray:
             return np.asarray(region.depth(q, self.roll(q, line)) - shaper.tooth_top_distance)
@@ -224,13 +222,13 @@ class Slices:
         return np.stack(lower), np.stack([tip, own_tip, outer])
 
     def _width(self, c: float) -> float:
-        lower, upper = self._bounds(c)
+        lower, upper = self._bounds(np.array(c))
         return float(upper.min() - lower.max())
 
     @cached_property
     def limits(self) -> tuple[float, float]:
         """C of the first line that lies on both flanks, and of the last, which is smaller [rad]."""
-        middle = float(self.contact.pressure_angle + self._turn(self.contact.pressure_angle))
+        middle = float(self.contact.pressure_angle + self._turn(np.array(self.contact.pressure_angle)))
         middle -= 0.5 * float(sum(self.contact.rolls))
         ends = []
         for sense in (1.0, -1.0):

@@ -64,7 +64,11 @@ class LoadedContact:
             while self.gap(self.q0 + sense * step) < level:
                 step *= mpf("1.2")
             ends.append(
-                findroot(lambda q: self.gap(q) - level, (self.q0 + sense * step / 4, self.q0 + sense * step), "illinois")
+                findroot(
+                    lambda q: self.gap(q) - level,
+                    (self.q0 + sense * step / 4, self.q0 + sense * step),
+                    "illinois",
+                )
             )
         return ends
 
@@ -101,7 +105,9 @@ class LoadedContact:
             for function in functions:
                 f_low, f_high = function(low, low - c), function(high, high - c)
                 if f_low * f_high < 0:
-                    roots.append(findroot(lambda q, f=function: f(q, q - c), (low, high), "illinois", maxsteps=200))
+                    roots.append(
+                        findroot(lambda q, f=function: f(q, q - c), (low, high), "illinois", maxsteps=200)
+                    )
                 else:  # nowhere a bound, or everywhere beyond it
                     roots.append(low if (f_low >= 0) == (choose is max) else high)
             sides.append(choose(roots))
@@ -186,7 +192,14 @@ class LoadedContact:
             high *= 2
         while self.total(low, phase) > self.force:
             low /= 2
-        return findroot(lambda level: self.total(level, phase) - self.force, (low, high), "illinois", tol=1e-30, maxsteps=200, verify=False)
+        return findroot(
+            lambda level: self.total(level, phase) - self.force,
+            (low, high),
+            "illinois",
+            tol=1e-30,
+            maxsteps=200,
+            verify=False,
+        )
 
     # --- beginning and end ---------------------------------------------------------------------------------
 
@@ -196,7 +209,9 @@ class LoadedContact:
 
     def stops(self):
         """Age at which a pair ceases to be pressed."""
-        last = findroot(lambda age: self.ends(self.line(age))[1] - self.ends(self.line(age))[0], (2, 5), "illinois")
+        last = findroot(
+            lambda age: self.ends(self.line(age))[1] - self.ends(self.line(age))[0], (2, 5), "illinois"
+        )
         return self._touches(1, last, -1)
 
     def _touches(self, side, start, sense):

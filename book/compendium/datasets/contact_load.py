@@ -71,7 +71,11 @@ def contact_pattern(drive: Drive, errors: Mapping[str, ArrayLike], depth: float)
             "inner": _length(both, bands[..., 0], "Inner end of the marking"),
             "outer": _length(both, bands[..., 1], "Outer end of the marking"),
         },
-        {"error": np.arange(len(errors)), "step": np.arange(sizes.shape[1]), "error_name": text("error", list(errors), "Error of alignment")},
+        {
+            "error": np.arange(len(errors)),
+            "step": np.arange(sizes.shape[1]),
+            "error_name": text("error", list(errors), "Error of alignment"),
+        },
         {"parameters": describe(drive, shaper_teeth=drive.generating.pinion_teeth, depth_um=1e6 * depth)},
     )
 
@@ -101,9 +105,16 @@ def effective_contact_ratio(drive: Drive, more: Sequence[int], torques: ArrayLik
     return xr.Dataset(
         {
             "contact_ratio": _number(("law", "more", "torque"), ratios, "Effective contact ratio"),
-            "unloaded": _number("more", [UnloadedContact(cut).contact_ratio for cut in drives], "Without load"),
+            "unloaded": _number(
+                "more", [UnloadedContact(cut).contact_ratio for cut in drives], "Without load"
+            ),
         },
-        {"law": [0, 1], "more": list(more), "torque": torques, "law_name": text("law", list(COMPLIANCES), "Law of compliance")},
+        {
+            "law": [0, 1],
+            "more": list(more),
+            "torque": torques,
+            "law_name": text("law", list(COMPLIANCES), "Law of compliance"),
+        },
         {"parameters": describe(drive)},
     )
 
@@ -186,7 +197,9 @@ def pressed_flank(drive: Drive, torques: ArrayLike, ages: int = 121, points: int
     both = ("age", "point")
     return xr.Dataset(
         {
-            "pressure": variable(("torque", *both), pressures, "Load per length", "N/m", rtol=1e-8, atol=1e-3),
+            "pressure": variable(
+                ("torque", *both), pressures, "Load per length", "N/m", rtol=1e-8, atol=1e-3
+            ),
             "position": _length(both, slices.position(s), "Along the face"),
             "height": _length(both, height, "Below the tooth top"),
         },
@@ -297,7 +310,38 @@ def loaded_gearbox(gearbox: Gearbox, path: loaded_contact) -> Torsional:
     return Torsional(cut, Contact(path=path, sharing="each", rate="total"), arm="conjugate")
 
 
-def gearbox_growth(models: Mapping[str, Mapping[str, Torsional]], speeds_rpm: ArrayLike, jobs: int = -1) -> xr.Dataset:
+def load_place(models: Mapping[str, Transverse], instants: int = 300) -> xr.Dataset:
+    """Radius of the load on the disk over a mesh period.
+
+    Parameters
+    ----------
+    models : mapping of str to Transverse
+        With one load each.
+    instants : int
+
+    Returns
+    -------
+    xarray.Dataset
+        ``radius`` [m] over (contact, time).
+    """
+    time = np.arange(instants) / instants
+    radii = []
+    for model in models.values():
+        (place,) = model.contact.places(model.body.drive)
+        radii.append(place.position(time)[:, 0] * model.body.outer_radius)
+    return xr.Dataset(
+        {"radius": _length(("contact", "time"), radii, "Radius of the load")},
+        {
+            "contact": np.arange(len(models)),
+            "time": time,
+            "contact_name": text("contact", list(models), "Contact"),
+        },
+    )
+
+
+def gearbox_growth(
+    models: Mapping[str, Mapping[str, Torsional]], speeds_rpm: ArrayLike, jobs: int = -1
+) -> xr.Dataset:
     """Unstable share of a range of speeds and largest growth rate of gearboxes with several contacts.
 
     Parameters
@@ -329,7 +373,9 @@ def gearbox_growth(models: Mapping[str, Mapping[str, Torsional]], speeds_rpm: Ar
     both = ("gearbox", "contact")
     return xr.Dataset(
         {
-            "unstable": variable(both, (growth > 0).mean(axis=-1), "Unstable share", "1", atol=3.0 / shown.size),
+            "unstable": variable(
+                both, (growth > 0).mean(axis=-1), "Unstable share", "1", atol=3.0 / shown.size
+            ),
             "largest": _growth(both, growth.max(axis=-1), "Largest growth rate"),
         },
         {

@@ -65,7 +65,9 @@ def effective_contact_ratio(data: xr.Dataset, tregold: float, line: float) -> Fi
     ax.axhline(tregold, color=GREY, linewidth=1.0)
     ax.axhline(line, color=GREY, linewidth=1.0)
     ax.set(xscale="log", xlabel="torque at the pinion [N m]", ylabel="effective contact ratio")
-    label_line(ax, "Tregold's, and that of the unloaded point", (float(data.torque[15]), tregold), (0.0, 12.0))
+    label_line(
+        ax, "Tregold's, and that of the unloaded point", (float(data.torque[15]), tregold), (0.0, 12.0)
+    )
     label_line(ax, "line contact, shaper as the pinion", (float(data.torque[2]), line), (0.0, -18.0))
     ax.plot([], [], "-", color=INK, label=_LAW["slice"])
     ax.plot([], [], "--", color=INK, label=_LAW["pair"])
@@ -111,9 +113,9 @@ def _draw_pressure(ax: Any, data: xr.Dataset, torque: float, largest: float) -> 
     mesh: QuadMesh = ax.pcolormesh(
         data.position.values * _MM,
         data.height.values * _MM,
-        np.ma.masked_less_equal(pressure * 1e-3, 0.0),
-        cmap=GROWTH,
-        vmin=0.0,
+        pressure * 1e-3,
+        cmap=GROWTH.with_extremes(under="none"),
+        vmin=1e-3 * largest * 1e-3,
         vmax=largest * 1e-3,
         shading="gouraud",
         rasterized=True,
@@ -146,15 +148,31 @@ def unstable_shares(data: xr.Dataset, torques: Sequence[float], rated: float, ca
         share = 100.0 * data.unstable.isel(drive=case)
         for law, colour in (("slice", BLUE), ("pair", GREEN)):
             rows = [names.index(f"{law} {torque:g}") for torque in torques]
-            ax.plot(torques, share.values[rows], _DASH[law], color=colour, marker="o", markersize=3, label=_LAW[law])
+            ax.plot(
+                torques,
+                share.values[rows],
+                _DASH[law],
+                color=colour,
+                marker="o",
+                markersize=3,
+                label=_LAW[law],
+            )
         low, high = torques[0], torques[-1]
         for name, marker, colour, place, label in (
-            ("as printed", "*", VERMILION, (low * high) ** 0.5, "as printed: sweep of lines, Tregold's clock"),
+            (
+                "as printed",
+                "*",
+                VERMILION,
+                (low * high) ** 0.5,
+                "as printed: sweep of lines, Tregold's clock",
+            ),
             ("point", "o", ORANGE, low / 2.0, "point contact, no load"),
             ("line", "s", PURPLE, high * 2.0, "line contact, its own clock"),
         ):
             value = float(share[names.index(name)])
-            ax.plot([place], [value], marker, color=colour, markersize=12 if marker == "*" else 7, label=label)
+            ax.plot(
+                [place], [value], marker, color=colour, markersize=12 if marker == "*" else 7, label=label
+            )
         ax.axvline(rated, color=GREY, linewidth=0.8, linestyle=":")
         ax.set(xscale="log", xlabel="torque at the pinion [N m]", title=title)
     axes[0].set_ylabel("unstable cells of the map [%]")
@@ -164,14 +182,27 @@ def unstable_shares(data: xr.Dataset, torques: Sequence[float], rated: float, ca
 
 
 @styled
+def load_place(data: xr.Dataset) -> Figure:
+    """Radius of the load over a mesh period, one line a contact."""
+    figure, (ax,) = panels(height=3.2)
+    for place, (name, colour) in enumerate(
+        zip(data.contact_name.values.tolist(), (VERMILION, BLUE, GREEN), strict=True)
+    ):
+        ax.plot(data.time, data.radius.isel(contact=place) * _MM, color=colour, label=name)
+    ax.set(xlabel="$t/T_0$", ylabel="radius of the load [mm]")
+    ax.legend()
+    return figure
+
+
+@styled
 def torque_maps(maps: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
     """Growth rate over speed and torque."""
     figure, axes = panels(1, len(maps), height=3.8, sharey=True)
     largest = max(float(data.growth_rate.max()) for data in maps)
     for ax, data, title in zip(axes, maps, titles, strict=True):
-        growth = data.growth_rate.values
-        mesh = draw_unstable(ax, data.speed, data.torque, growth, max(largest, 1e-3))
-        draw_border(ax, data.speed, data.torque, growth)
+        speed, torque, growth = data.speed.values, data.torque.values, data.growth_rate.values
+        mesh = draw_unstable(ax, speed, torque, growth, max(largest, 1e-3))
+        draw_border(ax, speed, torque, growth)
         ax.set(yscale="log", xlabel="speed of the face gear [rpm]", title=title)
     axes[0].set_ylabel("torque at the pinion [N m]")
     figure.colorbar(mesh, ax=axes, label="growth rate [1/s]")
@@ -185,7 +216,9 @@ def dynamic_load(data: xr.Dataset) -> Figure:
     for torque in data.torque.values.tolist():
         ax.plot(data.speed, 100.0 * data.dynamic_force.sel(torque=torque), label=f"{torque:g} N m")
     ax.set(
-        yscale="log", xlabel="speed of the face gear [rpm]", ylabel="dynamic force of a pair, rms [% of static]"
+        yscale="log",
+        xlabel="speed of the face gear [rpm]",
+        ylabel="dynamic force of a pair, rms [% of static]",
     )
     ax.legend()
     return figure
