@@ -198,9 +198,7 @@ class Slices:
         base, own_base = at_roll(0.0), crossing(own_roll, least, most, lines)
         first = np.maximum(base, own_base)
         tip = at_roll(shaper.shaper_tip_roll)
-        own_tip = crossing(
-            lambda q, line: own_roll(q, line) - self.drive.pinion_tip_roll, least, most, lines
-        )
+        own_tip = crossing(lambda q, line: own_roll(q, line) - self.drive.pinion_tip_roll, least, most, lines)
 
         def above(q: FloatArray, line: FloatArray) -> FloatArray:
             return np.asarray(region.depth(q, self.roll(q, line)) - shaper.tooth_top_distance)

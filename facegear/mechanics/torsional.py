@@ -252,7 +252,9 @@ def _mean_dyad(drive: Drive, contact: Contact, arm: Arm) -> FloatArray:
 
     def dyads(fraction: FloatArray) -> FloatArray:
         vectors = np.stack([shape(fraction) for shape in shapes])
-        stiffness = [np.ones((fraction.size, 1)) if weight is None else weight(fraction) for weight in weights]
+        stiffness = [
+            np.ones((fraction.size, 1)) if weight is None else weight(fraction) for weight in weights
+        ]
         return np.asarray(np.einsum("pmi,pmj,pmk->mij", vectors, vectors, np.stack(stiffness)))
 
     mean = fourier_series(dyads, shapes[0].breakpoints, 1).mean
