@@ -8,13 +8,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
 from facegear.mechanics.slices import Slices
+from facegear.mechanics.torsional import mesh_stiffness
+from facegear.support.parameters import Material
 from facegear.support.types import FloatArray
 
+# Newton's rule for the approach: steps, and the error at which it ends, relative.
+_STEPS, _SETTLED = 60, 1e-12
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
@@ -48,13 +52,18 @@ class Compliance(ABC):
     slices: Slices
     pair_stiffness: float
 
+    @classmethod
+    def of(cls, slices: Slices, correction_factor: float, material: Material) -> Self:
+        """Law for the teeth of a drive, from c_f of (7-2) and their material."""
+        return cls(slices, mesh_stiffness(slices.drive, correction_factor, material))
+
     @abstractmethod
     def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """Force [N] and stiffness [N/m] of pairs at an approach [m], both of one shape."""
 
     @abstractmethod
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """Ends of the contact as slices, and slices with the shares of the load that they have.
+        """Find the slices that are pressed, and the shares of the load that they have.
 
         Returns
         -------
@@ -64,6 +73,31 @@ class Compliance(ABC):
 
     events: ClassVar[tuple[tuple[int, int], ...]]
     """What is pressed, or how, changes where an end of a line (0 inner, 1 outer) passes so many times √δ."""
+
+    def reserves(self, approach: FloatArray, lines: Lines) -> FloatArray:
+        """What changes its sign at the other changes, which no √δ tells, shape (m,) + S; here there are none."""
+        return np.empty((0, *np.shape(lines.age)))
+
+    def pressure(self, approach: FloatArray, lines: Lines, s: FloatArray) -> FloatArray:
+        """Load per length of face on slices of lines, S + (m,) [N/m]; as long as they give way each for itself."""
+        inner, outer = lines.inner[..., np.newaxis], lines.outer[..., np.newaxis]
+        within = (inner <= s) & (s <= outer) & (inner < outer)
+        over = np.maximum(np.asarray(approach)[..., np.newaxis] - s**2, 0.0)
+        return np.where(within, over, 0.0) * self.pair_stiffness / self.slices.drive.face_width
+
+    def equilibrium(self, force: float, approach: FloatArray, lines: Lines) -> FloatArray:
+        """Approach δ [m], shape S, at which pairs (K,) + S have a force together [N], from a value that is near.
+
+        By Newton's rule. Force grows with δ, and ever faster: from above no step goes too far, and from below only the
+        first one does.
+        """
+        for _ in range(_STEPS):
+            carried, stiffness = (part.sum(axis=0) for part in self.force(approach, lines))
+            step = (carried - force) / np.where(stiffness > 0.0, stiffness, self.pair_stiffness)
+            approach = approach - step
+            if np.all((np.abs(step) <= _SETTLED * approach) & (stiffness > 0.0)):
+                return approach
+        raise RuntimeError(f"approach did not settle: last step {np.abs(step).max():.3g} m")
 
 
 @dataclass(frozen=True)

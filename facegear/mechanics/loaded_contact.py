@@ -6,8 +6,8 @@ every instant. Where it exceeds all gaps, contact is along whole lines, as betwe
 0, at the point of the unloaded contact.
 
 How a tooth gives way is a `Compliance`. Two of them bound the truth: slices of a Winkler bedding, each for itself
-(`slice`), and rigid teeth on one spring a pair (`pair`). A tooth between them, an elastic plate, resists more where its
-neighbours are not pressed.
+(`slice`), and rigid teeth on one spring a pair (`pair`). A tooth between them is an elastic plate
+(`plate`, :mod:`facegear.mechanics.tooth_plate`), which resists more where its neighbours are not pressed.
 """
 
 from __future__ import annotations
@@ -27,14 +27,13 @@ from facegear.geometry.kinematics import merged
 from facegear.geometry.point_contact import ALIGNED, Misalignment
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.slices import Slices
+from facegear.mechanics.tooth_plate import PlateCompliance
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.support.parameters import STEEL, Material, finite_array, keep, one_of, positive
 from facegear.support.types import FloatArray
 
 # Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.
 _INSTANTS, _FINER = 64, 4
-# Newton's rule for the approach: steps, and the error at which it ends, relative.
-_STEPS, _SETTLED = 60, 1e-12
 # Relative error of series over a mesh period.
 _TOLERANCE = 1e-12
 # How short a piece must be, in mesh periods, before it may have more.
@@ -63,7 +62,11 @@ class LoadedPairs(NamedTuple):
     approach: FloatArray
 
 
-COMPLIANCES: dict[str, type[Compliance]] = {"slice": SliceCompliance, "pair": PairCompliance}
+COMPLIANCES: dict[str, type[Compliance]] = {
+    "slice": SliceCompliance,
+    "plate": PlateCompliance,
+    "pair": PairCompliance,
+}
 """Laws of compliance by name."""
 
 
@@ -84,11 +87,12 @@ class LoadedContact:
         At the pinion [N m], greater than 0.
     misalignment : Misalignment
         Default: none.
-    compliance : {"slice", "pair"}
-        How teeth give way: each slice of the face for itself, k_m/L (`SliceCompliance`), or each pair as a rigid body
-        on one spring k_m (`PairCompliance`). They bound the truth.
+    compliance : {"slice", "plate", "pair"}
+        How teeth give way: each slice of the face for itself, k_m/L (`SliceCompliance`), each pair as a rigid body on
+        one spring k_m (`PairCompliance`), or, between these bounds, as elastic plates of their own thickness
+        (`PlateCompliance`), which have a stiffness of their own.
     correction_factor : float
-        c_f of the mean mesh stiffness k_m (7-2), from above 0 to 1.
+        c_f of the mean mesh stiffness k_m (7-2), from above 0 to 1; of plates, what it leaves of their stiffness.
     material : Material
         Of the teeth. Default: steel.
 
@@ -139,7 +143,7 @@ class LoadedContact:
 
     @cached_property
     def _law(self) -> Compliance:
-        return COMPLIANCES[self.compliance](self.slices, self.pair_stiffness)
+        return COMPLIANCES[self.compliance].of(self.slices, self.correction_factor, self.material)
 
     # --- equilibrium ------------------------------------------------------------------------------------------
 
@@ -172,18 +176,8 @@ class LoadedContact:
         return self._approach_from(near, ages)
 
     def _approach_from(self, approach: FloatArray, ages: FloatArray) -> FloatArray:
-        """Approach δ from a value that is near [m], by Newton's rule.
-
-        Force grows with δ, and ever faster: from above no step goes too far, and from below only the first one does.
-        """
-        lines = self._lines(self._all_pairs(ages))
-        for _ in range(_STEPS):
-            force, stiffness = (part.sum(axis=0) for part in self._law.force(approach, lines))
-            step = (force - self.force) / np.where(stiffness > 0.0, stiffness, self.pair_stiffness)
-            approach = approach - step
-            if np.all((np.abs(step) <= _SETTLED * approach) & (stiffness > 0.0)):
-                return approach
-        raise RuntimeError(f"approach did not settle: last step {np.abs(step).max():.3g} m")
+        """Approach δ from a value that is near [m]."""
+        return self._law.equilibrium(self.force, approach, self._lines(self._all_pairs(ages)))
 
     # --- events -----------------------------------------------------------------------------------------------
 
@@ -194,8 +188,15 @@ class LoadedContact:
         grid = np.append(np.arange(count + 1) / instants, self.slices.sweep)
         approach = self._approach(np.append(phases, self.slices.sweep))
         reach = np.sqrt(np.append(np.resize(approach[:-1], count + 1), approach[-1]))
-        ends, events = self._lines(grid), self._law.events
-        signs = np.sign(np.stack([ends[end] - level * reach for end, level in events]))
+        lines = self._lines(grid)
+        return np.sort(
+            np.concatenate([self._passages(grid, lines, reach), self._turns(grid, lines, reach**2)])
+        )
+
+    def _passages(self, grid: FloatArray, lines: Lines, reach: FloatArray) -> FloatArray:
+        """Ages at which an end of a line passes a multiple of √δ, between those of a grid."""
+        events = self._law.events
+        signs = np.sign(np.stack([lines[end] - level * reach for end, level in events]))
         which, where = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
         if not which.size:
             return np.empty(0)
@@ -210,7 +211,20 @@ class LoadedContact:
                 rising * np.where(level == 0.0, s, level * np.where(level * s > 0.0, excess, -1.0))
             )
 
-        return np.sort(crossing(beyond, grid[where], grid[where + 1], *chosen.T, signs[which, where + 1]))
+        return crossing(beyond, grid[where], grid[where + 1], *chosen.T, signs[which, where + 1])
+
+    def _turns(self, grid: FloatArray, lines: Lines, approach: FloatArray) -> FloatArray:
+        """Ages at which a reserve of the law changes its sign, between those of a grid."""
+        signs = np.sign(self._law.reserves(approach, lines))
+        which, where = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
+        if not which.size:
+            return np.empty(0)
+
+        def reserve(age: FloatArray, number: FloatArray, rising: FloatArray) -> FloatArray:
+            reserves = self._law.reserves(self._approach(age), self._lines(age))
+            return np.asarray(rising * reserves[number.astype(int), np.arange(age.size)])
+
+        return crossing(reserve, grid[where], grid[where + 1], which.astype(float), signs[which, where + 1])
 
     @cached_property
     def _mesh(self) -> tuple[float, float, PiecewiseChebyshev]:
@@ -331,7 +345,7 @@ class LoadedContact:
         )
 
     def pressure(self, fraction: ArrayLike, position: ArrayLike) -> FloatArray:
-        """Load per length of face on slices [N/m], that of each pair; for slices that give way each for itself.
+        """Load per length of face on slices [N/m], that of each pair; of `pair`, which has none, that of `slice`.
 
         Parameters
         ----------
@@ -353,10 +367,7 @@ class LoadedContact:
         instants, u = finite_array("fraction", fraction), finite_array("position", position, "m")
         start = instants - np.floor(instants)
         ages = np.stack([start + k for k in range(math.ceil(self.contact_ratio))]) + self._mesh[0]
-        inner, outer = (self.slices.position(end)[..., np.newaxis] for end in self.slices.ends(ages))
-        there = (inner <= u) & (u <= outer) & (ages <= self.slices.sweep)[..., np.newaxis]
-        over = self._approach(ages)[..., np.newaxis] - self.slices.contact.gap(u)
-        return np.where(there, np.maximum(over, 0.0), 0.0) * self.pair_stiffness / self.drive.face_width
+        return self._law.pressure(self._approach(ages), self._lines(ages), self.slices.at(u))
 
 
 def fit_tolerances(breakpoints: tuple[float, ...]) -> FloatArray:
