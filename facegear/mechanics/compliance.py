@@ -75,7 +75,7 @@ class Compliance(ABC):
     """What is pressed, or how, changes where an end of a line (0 inner, 1 outer) passes so many times √δ."""
 
     def reserves(self, approach: FloatArray, lines: Lines) -> FloatArray:
-        """What changes its sign at the other changes, which no √δ tells, shape (m,) + S; here there are none."""
+        """Quantities of which the signs tell the changes that no √δ tells, shape (m,) + S; here there are none."""
         return np.empty((0, *np.shape(lines.age)))
 
     def pressure(self, approach: FloatArray, lines: Lines, s: FloatArray) -> FloatArray:
@@ -83,7 +83,7 @@ class Compliance(ABC):
         inner, outer = lines.inner[..., np.newaxis], lines.outer[..., np.newaxis]
         within = (inner <= s) & (s <= outer) & (inner < outer)
         over = np.maximum(np.asarray(approach)[..., np.newaxis] - s**2, 0.0)
-        return np.where(within, over, 0.0) * self.pair_stiffness / self.slices.drive.face_width
+        return np.asarray(np.where(within, over, 0.0) * self.pair_stiffness / self.slices.drive.face_width)
 
     def equilibrium(self, force: float, approach: FloatArray, lines: Lines) -> FloatArray:
         """Approach δ [m], shape S, at which pairs (K,) + S have a force together [N], from a value that is near.
@@ -98,6 +98,11 @@ class Compliance(ABC):
             if np.all((np.abs(step) <= _SETTLED * approach) & (stiffness > 0.0)):
                 return approach
         raise RuntimeError(f"approach did not settle: last step {np.abs(step).max():.3g} m")
+
+    def balanced(self, force: float, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
+        """Approach [m] as of :meth:`equilibrium`, and stiffness of all pairs there [N/m], both of shape S."""
+        settled = self.equilibrium(force, approach, lines)
+        return settled, np.asarray(self.force(settled, lines)[1].sum(axis=0))
 
 
 @dataclass(frozen=True)

@@ -172,8 +172,11 @@ class LoadedContact:
 
     def _approach(self, ages: FloatArray) -> FloatArray:
         """Approach δ when a pair has an age [m]."""
-        near = np.interp(ages, np.arange(_INSTANTS) / _INSTANTS, self._coarse, period=1.0)
-        return self._approach_from(near, ages)
+        return self._approach_from(self._near(ages), ages)
+
+    def _near(self, ages: FloatArray) -> FloatArray:
+        """Approach from its neighbours in time [m]."""
+        return np.interp(ages, np.arange(_INSTANTS) / _INSTANTS, self._coarse, period=1.0)
 
     def _approach_from(self, approach: FloatArray, ages: FloatArray) -> FloatArray:
         """Approach δ from a value that is near [m]."""
@@ -250,9 +253,9 @@ class LoadedContact:
 
         def values(fraction: FloatArray, piece: int) -> FloatArray:
             instants = fraction + first
-            approach = self._approach(instants)
-            stiffness = self._law.force(approach, self._lines(self._all_pairs(instants)))[1]
-            return np.stack([approach, stiffness.sum(axis=0)], axis=-1) / units
+            lines = self._lines(self._all_pairs(instants))
+            balanced = self._law.balanced(self.force, self._near(instants), lines)
+            return np.asarray(np.stack(balanced, axis=-1) / units)
 
         return PiecewiseChebyshev.fit(values, breakpoints, tolerance=fit_tolerances(breakpoints)).transformed(
             np.diag(units)
@@ -337,8 +340,8 @@ class LoadedContact:
         force, stiffness = self._law.force(approach, lines)
         # Where a pair is not pressed its place means nothing; that of the unloaded contact is always there.
         there = force > 0.0
-        ends = (np.where(there, end, 0.0) for end in (lines.inner, lines.outer))
-        s, shares = self._law.pressed(approach, Lines(*ends, lines.age))
+        inner, outer = (np.where(there, end, 0.0) for end in (lines.inner, lines.outer))
+        s, shares = self._law.pressed(approach, Lines(inner, outer, lines.age))
         radius, angle = self.slices.place(s, since_first_line[..., np.newaxis])
         return LoadedPairs(
             force, stiffness, (shares * radius).sum(axis=-1), (shares * angle).sum(axis=-1), approach

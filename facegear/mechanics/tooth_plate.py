@@ -1,45 +1,50 @@
 """Teeth as cantilever plates: a compliance between slices of their own and rigid teeth.
 
-A tooth under a load somewhere along its face gives way there most, and beside it less: its face holds together. Here it
-is a plate clamped at its root, of the true thickness of the tooth against height and along the face, which bends, twists
-and shears (Mindlin). Wellauer and Seireg (ASME Journal of Engineering for Industry 82, 1960, 213-220) took the cantilever
-plate for a gear tooth; Gagnon, Gosselin and Cloutier (analysis of spur and straight bevel gear teeth by the finite strip
-method) took Mindlin's plate with its true thickness. The deflection is found after Rayleigh and Ritz, in polynomials.
+A tooth under a load somewhere along its face gives way there most, and beside it less, as its face holds together.
+Here it is a plate clamped at its root, of the true thickness of the tooth against height and along the face, that
+bends, twists and shears (Mindlin). Wellauer and Seireg took the cantilever plate for a gear tooth (Bending strength of
+gear teeth by cantilever-plate theory, ASME Journal of Engineering for Industry 82, 1960, p. 213); Gagnon, Gosselin and
+Cloutier that of Mindlin with the true thickness (Analysis of spur and straight bevel gear teeth deflection by the
+finite strip method). The deflection is found after Rayleigh and Ritz, in polynomials. Under loads on a line, across
+which the shear jumps, it converges only as a power of their number: what they leave out is one or two hundredths.
 
 Next to the contact the flanks give way besides, as two cylinders do that touch along a line. That depends on the load
-by a logarithm, and is taken here for a constant per length of face: that at a Hertzian pressure of 1 GPa.
+by a logarithm, and is taken here for a constant per length of face, that at a Hertzian pressure of 1 GPa.
 
-What a pair of teeth has in contact is then an integral equation over the slices s that are pressed, u their place along
-the face, p the load per length and δ the approach:
+What a pair of teeth has in contact is then an integral equation over the slices s that are pressed, u their place
+along the face, p the load per length and δ the approach:
 
-    λ p(s) + ∫ K(s, s') p(s') u'(s') ds' = δ − s²,   p ≥ 0 where pressed, and p = 0 at an end that is no end of the line.
+    λ p(s) + ∫ K(s, s') p(s') u'(s') ds' = δ − s²,   p ≥ 0, and p = 0 at an end that is not one of the line.
 
-K is as smooth as the polynomials are, so that Gauss' nodes over what is pressed solve it to all digits. As p and its
-change with a free end vanish there, the slope of p alone makes Newton's rule for the ends.
+K is as smooth as the polynomials are, so that few of Gauss' nodes on what is pressed solve it. Load and stiffness do
+not change with a free end, to first order, as p is 0 there; and neither does p at the end itself: the slope of p alone
+makes Newton's rule for the ends.
 
-Left out are the fillets, the compression of the tooth along its height, what a bending tooth does to the gear body at its
-root and to its neighbours (c_f of (7-2) is to stand for bodies), and the growth of λ with a smaller load.
+Left out are the fillets, the compression of the tooth along its height, and that λ grows as the load falls. What the
+root of a tooth does to the gear's body, and so to its neighbours, is left to c_f of (7-2).
 """
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.polynomial import chebyshev, legendre
+from numpy.polynomial import Chebyshev, chebyshev, legendre
 
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.geometry.drive import Drive
 from facegear.mechanics.compliance import Compliance, Lines
 from facegear.mechanics.slices import Slices
 from facegear.support.parameters import Material
 from facegear.support.types import FloatArray
 
 # Polynomials of Ritz' method: against height, of degrees 1 and up, and along the face, of degrees 0 and up.
-_ACROSS, _ALONG = 5, 10
+_ACROSS, _ALONG = 6, 12
 # Shear correction of a rectangular section.
 _SHEAR = 5.0 / 6.0
 # Hertzian pressure for which the local compliance is taken [Pa].
@@ -49,7 +54,9 @@ _THINNEST = 0.05
 # Points of the involute between which its chord is interpolated.
 _TABLE = 2000
 # Error of the influence as a series in the age of lines, relative to the largest, and points on each line.
-_NEGLIGIBLE, _POINTS = 1e-12, 20
+_NEGLIGIBLE, _POINTS = 1e-12, 22
+# Ages of lines for their mean stiffness.
+_AGES = 64
 # Gauss-Legendre nodes on what is pressed.
 _NODES, _WEIGHTS = legendre.leggauss(20)
 _DIAGONAL = np.arange(_NODES.size)
@@ -62,7 +69,7 @@ _SQUARE[_TRIANGLE] = _SQUARE.T[_TRIANGLE] = np.arange(_TRIANGLE[0].size)
 _TO_SLOPES = chebyshev.chebder(np.eye(_POINTS))
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_PLACES, _POINTS - 1))
 # Newton's rule for ends: steps, the error from which the next step is the last, and how much of a contact one may drop.
-_STEPS, _NEARLY, _MOST = 80, 1e-9, 0.45
+_STEPS, _NEARLY, _MOST = 80, 1e-8, 0.45
 
 
 class Load(NamedTuple):
@@ -90,10 +97,9 @@ class Load(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class CantileverPlate:
-    """A plate of variable thickness, clamped along one edge, that bends and shears.
+    """A plate of variable thickness, clamped along one edge, that bends and shears (Mindlin).
 
-    Its displacements are w across, and −ζβ in its plane at a distance ζ from the middle; the rotations β are w's own and
-    those of the fibres across (Mindlin).
+    Its points move by w across it, and by −ζβ in its plane at a distance ζ from its middle.
 
     Parameters
     ----------
@@ -188,145 +194,200 @@ class CantileverPlate:
         return np.asarray(whole.reshape(*load.height.shape, -1) @ self._root)
 
     def influence(self, one: Load, other: Load) -> FloatArray:
-        """What unit forces at some points, shape S, move others, T, along their own normals, S + T [m/N]."""
+        """Move of points, shape S, along their own normals by unit forces at others, T: S + T [m/N]."""
         first, second = self.influence_factor(one), self.influence_factor(other)
         return np.asarray(np.tensordot(first, second, axes=(-1, -1)))
 
 
-@dataclass(frozen=True, eq=False)
-class Tooth:
+@dataclass(frozen=True)
+class Tooth(ABC):
     """A tooth as a plate, and where slices press on it.
 
     Parameters
     ----------
-    plate : CantileverPlate
-    load : callable
-        Of local pressure angles q and roll angles θs of the shaper, arrays of one shape [rad].
+    slices : Slices
+    material : Material
+    across, along : int
+        Polynomials of its plate, see :class:`CantileverPlate`.
     """
 
-    plate: CantileverPlate
-    load: Callable[[FloatArray, FloatArray], Load]
+    slices: Slices
+    material: Material
+    across: int = _ACROSS
+    along: int = _ALONG
+
+    @property
+    @abstractmethod
+    def height(self) -> float:
+        """From root to top [m]."""
+
+    @abstractmethod
+    def thickness(self, height: FloatArray, position: FloatArray) -> FloatArray:
+        """Thickness at heights above the root and coordinates u, arrays of one shape [m]."""
+
+    @abstractmethod
+    def load(self, q: FloatArray, roll: FloatArray) -> Load:
+        """Load on what the shaper makes at local pressure angles q and roll angles θs, arrays of one shape [rad]."""
+
+    @cached_property
+    def plate(self) -> CantileverPlate:
+        """Plate of this thickness, as wide as the face."""
+        elastic = self.material.youngs_modulus, self.material.poissons_ratio
+        return CantileverPlate(
+            self.height, face(self.slices), self.thickness, *elastic, self.across, self.along
+        )
 
 
 def face(slices: Slices) -> tuple[float, float]:
     """Coordinates u of the inner and outer end of the face [m], with all slices that come in mesh."""
     drive = slices.drive.generating
-    offset = drive.pitch_radius / math.tan(drive.shaft_angle) if drive.shaft_angle != 0.5 * math.pi else 0.0
+    offset = drive.pitch_radius / math.tan(drive.shaft_angle)
     used = [slices.position(end) for end in slices.ends(slices.breakpoints)]
     start = drive.flank_start / math.sin(drive.shaft_angle) + offset
     return min(start, float(used[0].min())), max(drive.outer_limit + offset, float(used[1].max()))
 
 
-def pinion_tooth(slices: Slices, material: Material) -> Tooth:
+@dataclass(frozen=True)
+class PinionTooth(Tooth):
     """Tooth of the pinion, as wide as the face gear's.
 
-    Its thickness is the chord of the involute, and below the base circle, where there is one above the root, that of
-    radii. The root is where these come to the dedendum circle.
+    Its thickness is the chord of the involute; below the base circle, where that lies above the root, the flanks are
+    radii. The root is where they come to the dedendum circle.
     """
-    drive, contact = slices.drive, slices.contact
-    region = drive.generating.contact_region
-    # Half the angle of the tooth on the base circle.
-    half_angle = math.pi / drive.pinion_teeth - drive.space_half_angle
-    lowest = math.sqrt(max((drive.dedendum_radius / drive.base_radius) ** 2 - 1.0, 0.0))
 
-    def on_flank(roll: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Height from the axis, and half the chord."""
-        radius = drive.base_radius * np.hypot(1.0, roll)
-        half = half_angle - roll + np.arctan(roll)
+    @property
+    def _drive(self) -> Drive:
+        return self.slices.drive
+
+    @property
+    def _half_angle(self) -> float:
+        """Half the angle of the tooth on the base circle [rad]."""
+        return math.pi / self._drive.pinion_teeth - self._drive.space_half_angle
+
+    def _flank(self, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Distance of the involute from the axis, along the middle of the tooth, and half the chord there [m]."""
+        radius, half = (
+            self._drive.base_radius * np.hypot(1.0, roll),
+            self._half_angle - roll + np.arctan(roll),
+        )
         return radius * np.cos(half), radius * np.sin(half)
 
-    heights, halves = on_flank(np.linspace(lowest, drive.pinion_tip_roll, _TABLE))
-    slope = float(halves[0] / heights[0])
-    root = drive.dedendum_radius / math.hypot(1.0, slope)
+    @cached_property
+    def _profile(self) -> tuple[FloatArray, FloatArray]:
+        """Involute from the base circle or the root to the tip, as :meth:`_flank` has it."""
+        drive = self._drive
+        lowest = math.sqrt(max((drive.dedendum_radius / drive.base_radius) ** 2 - 1.0, 0.0))
+        return self._flank(np.linspace(lowest, drive.pinion_tip_roll, _TABLE))
 
-    def thickness(height: FloatArray, position: FloatArray) -> FloatArray:
-        above = height + root
-        half = np.where(above < heights[0], above * slope, np.interp(above, heights, halves))
-        return np.maximum(2.0 * half, _THINNEST * drive.module)
+    @cached_property
+    def _root(self) -> float:
+        """Distance of the root from the axis [m]."""
+        heights, halves = self._profile
+        return self._drive.dedendum_radius / math.hypot(1.0, float(halves[0] / heights[0]))
 
-    def load(q: FloatArray, roll: FloatArray) -> Load:
-        own = contact.own_roll(q, roll)
-        height, half = on_flank(own)
-        # A force along a tangent of the base circle, seen from the middle of the tooth.
-        direction = own - half_angle
+    @property
+    def height(self) -> float:
+        """From the root to the chord of the tip [m]."""
+        return float(self._profile[0][-1] - self._root)
+
+    def thickness(self, height: FloatArray, position: FloatArray) -> FloatArray:
+        """Chord, the same all along the face [m]."""
+        heights, halves = self._profile
+        above = height + self._root
+        half = np.where(
+            above < heights[0], above * (halves[0] / heights[0]), np.interp(above, heights, halves)
+        )
+        return np.asarray(np.maximum(2.0 * half, _THINNEST * self._drive.module))
+
+    def load(self, q: FloatArray, roll: FloatArray) -> Load:
+        """Load along a tangent of the base circle."""
+        own = self.slices.contact.own_roll(q, roll)
+        height, half = self._flank(own)
+        # Against a line square to the middle of the tooth, towards the root.
+        direction = own - self._half_angle
+        position = np.broadcast_to(self._drive.generating.contact_region.position(q), own.shape)
         return Load(
-            height - root,
-            np.broadcast_to(region.position(q), own.shape),
-            np.cos(direction),
-            -half * np.sin(direction),
-            np.zeros_like(own),
+            height - self._root, position, np.cos(direction), -half * np.sin(direction), np.zeros_like(own)
         )
 
-    return Tooth(_plate(float(heights[-1]) - root, slices, thickness, material), load)
 
+@dataclass(frozen=True)
+class GearTooth(Tooth):
+    """Tooth of the face gear, from the shaper's tip circle, its root, to its top.
 
-def gear_tooth(slices: Slices, material: Material) -> Tooth:
-    """Tooth of the face gear, from the tip circle of the shaper, its root, to its top.
-
-    Heights and u are those at which the shaper makes a point; that the tooth turns a few degrees about the gear's axis
-    meanwhile counts in its thickness and in the direction of the force, not in these. Below the flank, where the fillet
-    is, it is as thick as at the end of the flank.
+    Height and u are those at which the shaper makes a point. That the tooth turns by a few degrees about the gear's
+    axis meanwhile counts in its thickness and in the direction of the load, not in these. Below the flank, where the
+    fillet is, it is as thick as at the end of the flank. Its ends are taken square to the root.
     """
-    drive = slices.drive.generating
-    region = drive.contact_region
-    base, ratio, angle = drive.base_radius, drive.speed_ratio, drive.shaft_angle
-    sine, cosine = math.sin(angle), math.cos(angle)
 
-    def turned(q: FloatArray, roll: FloatArray, x: FloatArray, inwards: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Components of a vector across the tooth and towards its outer end, from where its point was made."""
-        turn = ratio * (q - roll - drive.space_half_angle)
-        return x * np.cos(turn) - inwards * np.sin(turn), x * np.sin(turn) + inwards * np.cos(turn)
+    @property
+    def _drive(self) -> Drive:
+        return self.slices.drive.generating
 
-    def depth(q: FloatArray, roll: FloatArray) -> FloatArray:
-        return np.asarray(base * (np.cos(q) + roll * np.sin(q)))
+    @property
+    def height(self) -> float:
+        """From the root to the top [m]."""
+        return self._drive.shaper_tip_radius - self._drive.tooth_top_distance
 
-    def half_thickness(q: FloatArray, roll: FloatArray) -> FloatArray:
-        outwards = region.position(q) * sine - depth(q, roll) * cosine
-        return turned(q, roll, base * (np.sin(q) - roll * np.cos(q)), outwards)[0]
+    def _turned(
+        self, q: FloatArray, roll: FloatArray, x: FloatArray, outwards: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Components of a vector square to the middle of the tooth, and outwards in the gear's plane.
 
-    def thickness(height: FloatArray, position: FloatArray) -> FloatArray:
-        q = np.arccos(np.minimum(float(region.position(0.0)) / position, 1.0 - 1e-9))
-        roll = ((drive.shaper_tip_radius - height) / base - np.cos(q)) / np.sin(q)
-        half = half_thickness(q, np.clip(roll, 0.0, drive.shaper_tip_roll))
-        return np.maximum(2.0 * half, _THINNEST * drive.module)
+        From those, x and −y_p, where its point is made.
+        """
+        turn = self._drive.speed_ratio * (q - roll - self._drive.space_half_angle)
+        return x * np.cos(turn) - outwards * np.sin(turn), x * np.sin(turn) + outwards * np.cos(turn)
 
-    def load(q: FloatArray, roll: FloatArray) -> Load:
-        across, outwards = turned(q, roll, -np.cos(q), -np.sin(q) * cosine)
-        along_axis = -np.sin(q) * sine
-        upwards, along = along_axis * sine + outwards * cosine, outwards * sine - along_axis * cosine
-        half = half_thickness(q, roll)
-        height = drive.shaper_tip_radius - depth(q, roll)
-        position = np.broadcast_to(region.position(q), half.shape)
+    def _depth(self, q: FloatArray, roll: FloatArray) -> FloatArray:
+        """Distance from the shaper's axis, in the plane of both axes [m]."""
+        return np.asarray(self._drive.base_radius * (np.cos(q) + roll * np.sin(q)))
+
+    def _half_thickness(self, q: FloatArray, roll: FloatArray) -> FloatArray:
+        drive, region = self._drive, self._drive.contact_region
+        outwards = region.position(q) * math.sin(drive.shaft_angle)
+        outwards = outwards - self._depth(q, roll) * math.cos(drive.shaft_angle)
+        return self._turned(q, roll, drive.base_radius * (np.sin(q) - roll * np.cos(q)), outwards)[0]
+
+    def thickness(self, height: FloatArray, position: FloatArray) -> FloatArray:
+        """Chord of the generated flanks [m]."""
+        drive = self._drive
+        q = np.arccos(float(drive.contact_region.position(0.0)) / position)
+        roll = ((drive.shaper_tip_radius - height) / drive.base_radius - np.cos(q)) / np.sin(q)
+        half = self._half_thickness(q, np.clip(roll, 0.0, drive.shaper_tip_roll))
+        return np.asarray(np.maximum(2.0 * half, _THINNEST * drive.module))
+
+    def load(self, q: FloatArray, roll: FloatArray) -> Load:
+        """Load along the normal of the generated flank, into the tooth."""
+        drive = self._drive
+        sine, cosine = math.sin(drive.shaft_angle), math.cos(drive.shaft_angle)
+        # The normal is −(cos q, sin q, 0) where it is made.
+        across, outwards = self._turned(q, roll, -np.cos(q), -np.sin(q) * cosine)
+        axial = -np.sin(q) * sine
+        upwards, along = axial * sine + outwards * cosine, outwards * sine - axial * cosine
+        half = self._half_thickness(q, roll)
+        height = drive.shaper_tip_radius - self._depth(q, roll)
+        position = np.broadcast_to(drive.contact_region.position(q), half.shape)
         return Load(height, position, across, -half * upwards, -half * along)
-
-    return Tooth(_plate(drive.shaper_tip_radius - drive.tooth_top_distance, slices, thickness, material), load)
-
-
-def _plate(
-    height: float,
-    slices: Slices,
-    thickness: Callable[[FloatArray, FloatArray], FloatArray],
-    material: Material,
-) -> CantileverPlate:
-    return CantileverPlate(
-        height, face(slices), thickness, material.youngs_modulus, material.poissons_ratio
-    )
 
 
 def local_compliance(slices: Slices, material: Material) -> float:
     """Give way of both flanks next to the contact, per load per length of face, λ [m²/N].
 
-    w = p 2(1 − ν²)/(πE) [ln(4 d1 d2/a²) − ν/(1 − ν)] of two cylinders of one material, half widths a of the contact and
-    depths d as far as the middle of the teeth (Weber and Banaschek, Formänderung und Profilrücknahme bei gerad- und
-    schrägverzahnten Rädern, 1953; Johnson, Contact Mechanics, section 5.6). Here a is that at 1 GPa in the middle of the
-    path of the unloaded contact. Of steel λ is about 2e-11 m²/N; half the load makes it a tenth larger.
+    Two cylinders of one material come nearer by p 2(1 − ν²)/(πE) [ln(4 d1 d2/a²) − ν/(1 − ν)], with the half width a of
+    the contact and depths d, here as far as the middle of the teeth (Weber and Banaschek, Formänderung und
+    Profilrücknahme bei gerad- und schrägverzahnten Rädern, 1953; Johnson, Contact Mechanics, section 5.6). a is that
+    at 1 GPa in the middle of the path of the unloaded contact. With the drive of the examples λ is 1.55e-11 m²/N.
     """
     contact, stiffness = slices.contact, material.youngs_modulus / (1.0 - material.poissons_ratio**2)
     half_width = 4.0 * _PRESSURE / (float(contact.principal_curvatures[1]) * stiffness)
     q, roll = np.array(contact.pressure_angle), np.array(0.5 * contact.rolls.sum())
     loads = [tooth.load(q, roll) for tooth in _teeth(slices, material)]
     # Half the thickness across is |up| over the sine of the force, and the depth longer by its cosine.
-    depths = [float(np.hypot(load.up, load.along) / np.sqrt(1.0 - load.across**2) / abs(load.across)) for load in loads]
+    depths = [
+        float(np.hypot(load.up, load.along) / np.sqrt(1.0 - load.across**2) / abs(load.across))
+        for load in loads
+    ]
     logarithm = math.log(4.0 * math.prod(depths) / half_width**2)
     poissons_ratio = material.poissons_ratio
     return 2.0 / (math.pi * stiffness) * (logarithm - poissons_ratio / (1.0 - poissons_ratio))
@@ -334,20 +395,7 @@ def local_compliance(slices: Slices, material: Material) -> float:
 
 @lru_cache(maxsize=64)
 def _teeth(slices: Slices, material: Material) -> tuple[Tooth, Tooth]:
-    return pinion_tooth(slices, material), gear_tooth(slices, material)
-
-
-def _mean_influence(slices: Slices, teeth: tuple[Tooth, ...]) -> float:
-    """Mean deflection along the face under a uniform load per length, of all teeth as plates [m²/N]."""
-    contact = slices.contact
-    middle = np.array(contact.pressure_angle), np.array(0.5 * contact.rolls.sum())
-    total = 0.0
-    for tooth in teeth:
-        u, weights = _gauss(*tooth.plate.ends, 2 * tooth.plate.along)
-        load = tooth.load(*middle)
-        spread = Load(*(np.broadcast_to(part, u.shape) for part in load._replace(position=u)))
-        total += float(((weights @ tooth.plate.influence_factor(spread)) ** 2).sum()) / float(weights.sum())
-    return total
+    return PinionTooth(slices, material), GearTooth(slices, material)
 
 
 @lru_cache(maxsize=64)
@@ -413,7 +461,7 @@ class PlateCompliance(Compliance):
     ----------
     slices : Slices
     pair_stiffness : float
-        Mean of a pair with a uniform load all along the face, at the height of the middle of the unloaded path [N/m].
+        That of a pair pressed over the whole face, if its lines were as long [N/m], see `whole_face_stiffness`.
     bedding : float
         λ/c_f [m²/N].
     teeth : tuple of Tooth
@@ -432,12 +480,32 @@ class PlateCompliance(Compliance):
     @classmethod
     def of(cls, slices: Slices, correction_factor: float, material: Material) -> Self:
         """Teeth of a drive, all of their compliance over c_f, as in (7-2)."""
-        teeth = _teeth(slices, material)
-        bedding = local_compliance(slices, material)
-        compliance = bedding + _mean_influence(slices, teeth)
-        width = face(slices)[1] - face(slices)[0]
         softer = 1.0 / correction_factor
-        return cls(slices, width / (softer * compliance), softer * bedding, teeth, softer)
+        bedding = softer * local_compliance(slices, material)
+        law = cls(slices, slices.drive.face_width / bedding, bedding, _teeth(slices, material), softer)
+        return replace(law, pair_stiffness=law.whole_face_stiffness)
+
+    @cached_property
+    def whole_face_stiffness(self) -> float:
+        """Width of the face times the stiffness per length of lines pressed from end to end, all of them [N/m].
+
+        Slices of as much, and these plates, are equally stiff in the mean where a drive is loaded heavily.
+        """
+        ages, weights = _gauss(0.0, self.slices.sweep, _AGES)
+        inner, outer = self.slices.ends(ages)
+        lines = Lines(inner, outer, ages)
+        unit = np.ones_like(ages)
+        state = self._state(
+            np.stack([inner, outer]), lines, self._series(lines), lambda stiffness, missing: unit
+        )
+        length = state.weights.sum(axis=-1)
+        stiffness = (state.stiffness * state.weights).sum(axis=-1)
+        return self.slices.drive.face_width * float(weights @ stiffness) / float(weights @ length)
+
+    @cached_property
+    def _slope(self) -> Chebyshev:
+        """du/ds [√m]."""
+        return self.slices.position.deriv()
 
     # --- along lines ------------------------------------------------------------------------------------------
 
@@ -449,13 +517,13 @@ class PlateCompliance(Compliance):
         fraction = np.clip(lines.age, 0.0, sweep) / (sweep + 1.0)
         return np.asarray(self.softer * _influence(self.slices, self.teeth)(fraction)[:, _SQUARE])
 
-    def _state(
-        self, first: FloatArray, last: FloatArray, lines: Lines, series: FloatArray, balance: _Balance
-    ) -> _State:
-        """State of pairs (P,) that are pressed from first to last; of those of no length, nothing."""
-        middle, half = 0.5 * (first + last)[:, np.newaxis], 0.5 * (last - first)[:, np.newaxis]
+    def _state(self, ends: FloatArray, lines: Lines, series: FloatArray, balance: _Balance) -> _State:
+        """State of pairs (P,) that are pressed between two ends, (2, P); of those of no length, nothing."""
+        middle, half = (
+            part[:, np.newaxis] for part in (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]))
+        )
         nodes = middle + half * _NODES
-        weights = half * _WEIGHTS * self.slices.position.deriv()(nodes)
+        weights = half * _WEIGHTS * self._slope(nodes)
         values = _values(nodes, lines)
         matrix = (values @ series @ values.swapaxes(1, 2)) * weights[:, np.newaxis, :]
         matrix[:, _DIAGONAL, _DIAGONAL] += self.bedding
@@ -465,7 +533,7 @@ class PlateCompliance(Compliance):
         approach = balance((stiffness * weights).sum(axis=-1), (missing * weights).sum(axis=-1))
         load = approach[:, np.newaxis] * stiffness - missing
         deflection = (series @ (values.swapaxes(1, 2) @ (load * weights)[:, :, np.newaxis]))[..., 0]
-        return _State(approach, np.stack([first, last]), nodes, weights, load, stiffness, deflection)
+        return _State(approach, ends, nodes, weights, load, stiffness, deflection)
 
     def _settled(self, approach: FloatArray, lines: Lines, balance: _Balance) -> tuple[_State, FloatArray]:
         """State of pairs (P,) at a balance, from an approach that is near, and λp at both its ends, (2, P).
@@ -475,7 +543,7 @@ class PlateCompliance(Compliance):
         series = self._series(lines)
         ends, change = _reach(approach, lines), np.array(np.inf)
         for _ in range(_STEPS):
-            state = self._state(*ends, lines, series, balance)
+            state = self._state(ends, lines, series, balance)
             over, slope = _at_ends(state, lines)
             if np.all(change <= _NEARLY * np.sqrt(state.approach)):
                 return state, over
@@ -504,6 +572,10 @@ class PlateCompliance(Compliance):
         )
 
     def equilibrium(self, force: float, approach: FloatArray, lines: Lines) -> FloatArray:
+        """As of any law."""
+        return self.balanced(force, approach, lines)[0]
+
+    def balanced(self, force: float, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """As of any law, with the ends of all pairs and their approach in one iteration.
 
         Loads are linear in δ as long as ends stay, so that it is known for any ends; and as they come to where p = 0,
@@ -520,7 +592,9 @@ class PlateCompliance(Compliance):
             together = np.where(total > 0.0, (force + gap) / np.where(total > 0.0, total, 1.0), farther)
             return np.broadcast_to(together, shape).ravel()
 
-        return self._settled(start, row, balance)[0].approach.reshape(shape)[0]
+        state = self._settled(start, row, balance)[0]
+        stiffness = (state.stiffness * state.weights).sum(axis=-1).reshape(shape).sum(axis=0)
+        return state.approach.reshape(shape)[0], stiffness
 
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """Nodes of what is pressed, and their shares."""
@@ -554,10 +628,10 @@ class PlateCompliance(Compliance):
         return np.where(within, self.overlap(approach, lines, s), 0.0) / self.bedding
 
     def overlap(self, approach: FloatArray, lines: Lines, s: FloatArray) -> FloatArray:
-        """What is left of the approach beyond gap and bending on slices of lines, S + (m,) [m].
+        """Find what gap and bending leave of the approach on slices of lines, S + (m,) [m].
 
-        λ times the load per length where teeth are pressed; elsewhere less than 0, and there it is how far the flanks
-        are apart.
+        Where teeth are pressed it is λ times the load per length; elsewhere it is less than 0, and says how far apart
+        the flanks are.
         """
         shape = np.shape(lines.inner)
         state = self._at(approach, lines)[0]
@@ -576,7 +650,7 @@ def _at_ends(state: _State, lines: Lines) -> tuple[FloatArray, FloatArray]:
 
 
 def _reach(approach: FloatArray, lines: Lines) -> FloatArray:
-    """Ends, (2, P), of what is nearer than the approach on lines; no more than that can be pressed."""
+    """Find the ends, (2, P), of what is nearer than the approach on lines; no more than that can be pressed."""
     reach = np.sqrt(approach)
     return np.stack([np.clip(-reach, lines.inner, lines.outer), np.clip(reach, lines.inner, lines.outer)])
 
