@@ -149,13 +149,13 @@ class PairCompliance(Compliance):
     events = ((0, 1), (1, -1), (0, 0), (1, 0))
 
     def _nearest(self, lines: Lines) -> FloatArray:
-        return np.clip(0.0, lines.inner, lines.outer)
+        return np.asarray(np.clip(0.0, lines.inner, lines.outer))
 
     def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """k_m (δ − g) at the least gap."""
         pressed = approach - self._nearest(lines) ** 2
         there = (pressed > 0.0) & (lines.inner < lines.outer)
-        return self.pair_stiffness * np.where(there, pressed, 0.0), self.pair_stiffness * there
+        return self.pair_stiffness * np.where(there, pressed, 0.0), np.where(there, self.pair_stiffness, 0.0)
 
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """All at one slice."""
