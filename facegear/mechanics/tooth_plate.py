@@ -470,6 +470,14 @@ class PlateCompliance(Compliance):
         Those of pinion and face gear.
     softer : float
         1/c_f, by which the plates are softer than the teeth alone [-].
+
+    Examples
+    --------
+    >>> from facegear.geometry.drive import Drive
+    >>> from facegear.mechanics.loaded_contact import LoadedContact
+    >>> drive = Drive(26, 130, 3.175e-3, shaper_teeth=27)
+    >>> round(LoadedContact(drive, torque=100.0, compliance="plate").contact_ratio, 3)
+    2.495
     """
 
     bedding: float

@@ -27,6 +27,7 @@ from facegear.support.parameters import STEEL
 
 DRIVE = Drive(26, 130, 3.175e-3, shaper_teeth=27)
 SLICES = Slices(DRIVE)
+AGES = np.linspace(0.05, SLICES.sweep - 0.05, 40)
 TIMES = np.linspace(0.0, 1.0, 24, endpoint=False) + 0.01
 
 
@@ -180,7 +181,13 @@ def test_flanks_give_way_next_to_the_contact_as_strain_under_hertzs_pressure_add
 def test_without_plates_slices_give_way_each_for_itself(torque):
     slices = contact(torque, "slice")
     bedding = DRIVE.face_width / slices.pair_stiffness
-    beds = of_law(torque, PlateCompliance(SLICES, slices.pair_stiffness, bedding, (), 1.0))
+    law = PlateCompliance(SLICES, slices.pair_stiffness, bedding, (), 1.0)
+    inner, outer = SLICES.ends(AGES)
+    lines = Lines(inner, outer, AGES)
+    for approach in (1e-8, 1e-6, 1e-5, 1e-4):
+        one, other = (either.force(np.full(AGES.shape, approach), lines) for either in (law, slices._law))
+        assert_allclose(one, other, rtol=1e-12, atol=1e-12 * other[0].max())
+    beds = of_law(torque, law)
     assert_allclose(beds.contact_ratio, slices.contact_ratio, rtol=1e-11)
     assert_allclose(beds.transmission_error(TIMES), slices.transmission_error(TIMES), rtol=2e-12)
     assert_allclose(beds.mesh_stiffness(TIMES), slices.mesh_stiffness(TIMES), rtol=1e-10)
