@@ -1,6 +1,7 @@
 """Mechanical models that become a `PeriodicSystem` at each speed.
 
-Where teeth press and when (`contact`), the spinning disk under its pinions (`plate`, `mode_shapes`, `disk`,
+Where teeth press and when (`contact`), under load with the teeth's compliance (`loaded_contact`, `compliance`,
+`tooth_plate`), the spinning disk under its pinions (`plate`, `mode_shapes`, `disk`,
 `transverse`, `rotation`; chapters 4 and 5) and under a force at its rim (`inplane`, `edge_stiffness`; 6), the gearbox
 in torsion (`torsional`; 7), the classical equations (`classical`; 2), the dissertation's own drives (`cases`,
 `gearboxes`).

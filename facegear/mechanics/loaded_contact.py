@@ -6,17 +6,16 @@ every instant. Where it exceeds all gaps, contact is along whole lines, as with 
 goes to 0, at the point of the unloaded contact.
 
 How a tooth gives way is a `Compliance`. Two of them bound the truth: slices of a Winkler bedding, each for itself
-(`slice`), and rigid teeth on one spring a pair (`pair`). A tooth between them, an elastic plate, resists more where its
-neighbours are not pressed.
+(`slice`), and rigid teeth on one spring a pair (`pair`). A tooth between them is an elastic plate
+(`plate`, :mod:`facegear.mechanics.tooth_plate`), which resists more where its neighbours are not pressed.
 """
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,137 +25,19 @@ from facegear.geometry.contact_lines import crossing
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import merged
 from facegear.geometry.point_contact import ALIGNED, Misalignment
+from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.slices import Slices
+from facegear.mechanics.tooth_plate import PlateCompliance
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
 from facegear.support.types import FloatArray
 
 # Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.
 _INSTANTS, _FINER = 64, 4
-# Newton's rule for the approach: steps, and the error at which it ends, relative.
-_STEPS, _SETTLED = 60, 1e-12
 # Relative error of series over a mesh period.
 _TOLERANCE = 1e-12
 # How short a piece must be, in mesh periods, before it may have more.
 _SHORT = 1e-3
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
-
-
-class Lines(NamedTuple):
-    """What a pair of teeth has in mesh at instants of shape S.
-
-    Attributes
-    ----------
-    inner, outer : ndarray, shape S
-        Ends as slices s [√m]; nothing is in mesh where both are one.
-    age : ndarray, shape S
-        Since the first line on both flanks [mesh periods].
-    """
-
-    inner: FloatArray
-    outer: FloatArray
-    age: FloatArray
-
-
-@dataclass(frozen=True)
-class Compliance(ABC):
-    """How pairs of teeth give way.
-
-    Parameters
-    ----------
-    slices : Slices
-    pair_stiffness : float
-        k_m of a pair pressed over the whole face [N/m].
-    """
-
-    slices: Slices
-    pair_stiffness: float
-
-    @abstractmethod
-    def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """Force [N] and stiffness [N/m] of pairs at an approach [m], both of one shape."""
-
-    @abstractmethod
-    def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """Sample what is pressed: slices, with the shares of the load that they have.
-
-        Returns
-        -------
-        slices, shares : ndarray, shape S + (m,)
-            s [√m], and weights that add up to 1 [-].
-        """
-
-    def line_load(self, approach: FloatArray, s: FloatArray) -> FloatArray:
-        """Load per length of face [N/m] on slices at an approach [m]; see :meth:`LoadedContact.line_load`."""
-        raise ValueError(
-            "compliance must be one of slices for a load per length to exist, got that of rigid teeth on one spring"
-        )
-
-    events: ClassVar[tuple[tuple[int, int], ...]]
-    """What is pressed, or how, changes where an end of a line (0 inner, 1 outer) passes so many times √δ."""
-
-
-@dataclass(frozen=True)
-class SliceCompliance(Compliance):
-    """Each slice for itself, k_m/L: the softest, as no slice is held by its neighbours (Winkler)."""
-
-    # Contact begins, ends, or comes to an end of its line.
-    events = ((0, 1), (0, -1), (1, 1), (1, -1))
-
-    @property
-    def _foundation(self) -> float:
-        """Stiffness per length of face [N/m²]."""
-        return self.pair_stiffness / self.slices.drive.face_width
-
-    def _contact(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        reach = np.sqrt(approach)
-        first = np.maximum(lines.inner, -reach)
-        return first, np.maximum(np.minimum(lines.outer, reach), first)
-
-    def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """∫ (δ − g) du times k_m/L, and the length of contact times it."""
-        first, last = self._contact(approach, lines)
-        distance, area = self.slices.distance_and_area(np.stack([first, last]))
-        length = distance[1] - distance[0]
-        force = approach * length - (area[1] - area[0])
-        return self._foundation * force, self._foundation * length
-
-    def line_load(self, approach: FloatArray, s: FloatArray) -> FloatArray:
-        """K_m/L (δ − g) where that is positive."""
-        return np.asarray(self._foundation * np.maximum(approach - s**2, 0.0), dtype=float)
-
-    def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """As the gap leaves it, on Gauss–Legendre nodes."""
-        first, last = (end[..., np.newaxis] for end in self._contact(approach, lines))
-        s = 0.5 * (first + last) + 0.5 * (last - first) * _NODES
-        reach = np.sqrt(approach)[..., np.newaxis]
-        shares = np.maximum((reach - s) * (reach + s), 0.0) * self.slices.position.deriv()(s) * _WEIGHTS
-        whole = shares.sum(axis=-1, keepdims=True)
-        # A pair that just touches does so at one place.
-        shares = np.where(whole > 0.0, shares, _WEIGHTS) / np.where(whole > 0.0, whole, 2.0)
-        return s, np.asarray(shares, dtype=float)
-
-
-@dataclass(frozen=True)
-class PairCompliance(Compliance):
-    """Rigid teeth on one spring a pair: it touches at the least gap of its line, and has all of k_m there."""
-
-    # Contact begins, ends, or its slice comes to an end of the line.
-    events = ((0, 1), (1, -1), (0, 0), (1, 0))
-
-    def _nearest(self, lines: Lines) -> FloatArray:
-        return np.asarray(np.clip(0.0, lines.inner, lines.outer), dtype=float)
-
-    def force(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """k_m (δ − g) at the least gap."""
-        pressed = approach - self._nearest(lines) ** 2
-        there = (pressed > 0.0) & (lines.inner < lines.outer)
-        return self.pair_stiffness * np.where(there, pressed, 0.0), self.pair_stiffness * there.astype(float)
-
-    def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
-        """All at one slice."""
-        s = self._nearest(lines)[..., np.newaxis]
-        return s, np.ones_like(s)
 
 
 class LoadedPairs(NamedTuple):
@@ -181,7 +62,11 @@ class LoadedPairs(NamedTuple):
     approach: FloatArray
 
 
-COMPLIANCES: dict[str, type[Compliance]] = {"slice": SliceCompliance, "pair": PairCompliance}
+COMPLIANCES: dict[str, type[Compliance]] = {
+    "slice": SliceCompliance,
+    "plate": PlateCompliance,
+    "pair": PairCompliance,
+}
 """Laws of compliance by name."""
 
 
@@ -196,8 +81,8 @@ def checked_torque(torque: float) -> float:
     number = finite("torque", torque, "N m")
     if number <= 0.0:
         raise ValueError(
-            f"torque must be greater than 0 N m, got {number:g} N m: without load UnloadedContact has the contact, and a "
-            "torque the other way presses the other flank, for which an offset counts with the opposite sign"
+            f"torque must be greater than 0 N m, got {number:g} N m: without load UnloadedContact has the contact, and "
+            "a torque the other way presses the other flank, for which an offset counts with the opposite sign"
         )
     return number
 
@@ -219,11 +104,12 @@ class LoadedContact:
         At the pinion [N m], greater than 0.
     misalignment : Misalignment
         Default: none.
-    compliance : {"slice", "pair"}
-        How teeth give way: each slice of the face for itself, k_m/L (`SliceCompliance`), or each pair as a rigid body
-        on one spring k_m (`PairCompliance`). They bound the truth.
+    compliance : {"slice", "plate", "pair"}
+        How teeth give way: each slice of the face for itself, k_m/L (`SliceCompliance`), each pair as a rigid body on
+        one spring k_m (`PairCompliance`), or, between these bounds, as elastic plates of their own thickness
+        (`PlateCompliance`), which have a stiffness of their own.
     correction_factor : float
-        c_f of the mean mesh stiffness k_m (7-2), from above 0 to 1.
+        c_f of the mean mesh stiffness k_m (7-2), from above 0 to 1; of plates, what it leaves of their stiffness.
     material : Material
         Of the teeth. Default: steel.
 
@@ -274,7 +160,7 @@ class LoadedContact:
 
     @cached_property
     def _law(self) -> Compliance:
-        return COMPLIANCES[self.compliance](self.slices, self.pair_stiffness)
+        return COMPLIANCES[self.compliance].of(self.slices, self.correction_factor, self.material)
 
     # --- equilibrium ------------------------------------------------------------------------------------------
 
@@ -303,22 +189,15 @@ class LoadedContact:
 
     def _approach(self, ages: FloatArray) -> FloatArray:
         """Approach δ when a pair has an age [m]."""
-        near = np.interp(ages, np.arange(_INSTANTS) / _INSTANTS, self._coarse, period=1.0)
-        return self._approach_from(near, ages)
+        return self._approach_from(self._near(ages), ages)
+
+    def _near(self, ages: FloatArray) -> FloatArray:
+        """Approach from its neighbours in time [m]."""
+        return np.interp(ages, np.arange(_INSTANTS) / _INSTANTS, self._coarse, period=1.0)
 
     def _approach_from(self, approach: FloatArray, ages: FloatArray) -> FloatArray:
-        """Approach δ from a value that is near [m], by Newton's rule.
-
-        Force grows with δ, and ever faster: from above no step goes too far, and from below only the first one does.
-        """
-        lines = self._lines(self._all_pairs(ages))
-        for _ in range(_STEPS):
-            force, stiffness = (part.sum(axis=0) for part in self._law.force(approach, lines))
-            step = (force - self.force) / np.where(stiffness > 0.0, stiffness, self.pair_stiffness)
-            approach = approach - step
-            if np.all((np.abs(step) <= _SETTLED * approach) & (stiffness > 0.0)):
-                return approach
-        raise RuntimeError(f"approach did not settle: last step {np.abs(step).max():.3g} m")
+        """Approach δ from a value that is near [m]."""
+        return self._law.equilibrium(self.force, approach, self._lines(self._all_pairs(ages)))
 
     # --- events -----------------------------------------------------------------------------------------------
 
@@ -329,8 +208,15 @@ class LoadedContact:
         grid = np.append(np.arange(count + 1) / instants, self.slices.sweep)
         approach = self._approach(np.append(phases, self.slices.sweep))
         reach = np.sqrt(np.append(np.resize(approach[:-1], count + 1), approach[-1]))
-        ends, events = self._lines(grid), self._law.events
-        signs = np.sign(np.stack([ends[end] - level * reach for end, level in events]))
+        lines = self._lines(grid)
+        return np.sort(
+            np.concatenate([self._passages(grid, lines, reach), self._turns(grid, lines, reach**2)])
+        )
+
+    def _passages(self, grid: FloatArray, lines: Lines, reach: FloatArray) -> FloatArray:
+        """Ages at which an end of a line passes a multiple of √δ, between those of a grid."""
+        events = self._law.events
+        signs = np.sign(np.stack([lines[end] - level * reach for end, level in events]))
         which, where = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
         if not which.size:
             return np.empty(0)
@@ -345,7 +231,20 @@ class LoadedContact:
                 rising * np.where(level == 0.0, s, level * np.where(level * s > 0.0, excess, -1.0))
             )
 
-        return np.sort(crossing(beyond, grid[where], grid[where + 1], *chosen.T, signs[which, where + 1]))
+        return crossing(beyond, grid[where], grid[where + 1], *chosen.T, signs[which, where + 1])
+
+    def _turns(self, grid: FloatArray, lines: Lines, approach: FloatArray) -> FloatArray:
+        """Ages at which a reserve of the law changes its sign, between those of a grid."""
+        signs = np.sign(self._law.reserves(approach, lines))
+        which, where = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0.0)
+        if not which.size:
+            return np.empty(0)
+
+        def reserve(age: FloatArray, number: FloatArray, rising: FloatArray) -> FloatArray:
+            reserves = self._law.reserves(self._approach(age), self._lines(age))
+            return np.asarray(rising * reserves[number.astype(int), np.arange(age.size)])
+
+        return crossing(reserve, grid[where], grid[where + 1], which.astype(float), signs[which, where + 1])
 
     @cached_property
     def _mesh(self) -> tuple[float, float, PiecewiseChebyshev]:
@@ -371,9 +270,9 @@ class LoadedContact:
 
         def values(fraction: FloatArray, piece: int) -> FloatArray:
             instants = fraction + first
-            approach = self._approach(instants)
-            stiffness = self._law.force(approach, self._lines(self._all_pairs(instants)))[1]
-            return np.asarray(np.stack([approach, stiffness.sum(axis=0)], axis=-1) / units)
+            lines = self._lines(self._all_pairs(instants))
+            balanced = self._law.balanced(self.force, self._near(instants), lines)
+            return np.asarray(np.stack(balanced, axis=-1) / units)
 
         return PiecewiseChebyshev.fit(values, breakpoints, tolerance=fit_tolerances(breakpoints)).transformed(
             np.diag(units)
@@ -465,28 +364,34 @@ class LoadedContact:
             force, stiffness, (shares * radius).sum(axis=-1), (shares * angle).sum(axis=-1), approach
         )
 
-    def line_load(self, age: FloatArray, s: FloatArray) -> FloatArray:
-        """Load per length of face on slices of a line [N/m].
+    def pressure(self, fraction: ArrayLike, position: ArrayLike) -> FloatArray:
+        """Load per length of face on slices [N/m], that of each pair; of `pair`, which has none, that of `slice`.
 
         Parameters
         ----------
-        age : array, shape (k,)
-            Of lines, since the first on both flanks [mesh periods], as `slices.breakpoints` count it.
-        s : array, shape (k, m)
-            Slices of each line [√m] (:class:`Slices`).
+        fraction : array_like, shape S
+            T/T0, from 0 where a pair begins to be pressed; period 1.
+        position : array_like, shape (m,)
+            U along the shaper's axis [m].
 
         Returns
         -------
-        array, shape (k, m)
-            0 where a slice is not pressed.
+        ndarray, shape (P,) + S + (m,)
+            0 where a slice is not pressed, or not in mesh.
 
         Raises
         ------
-        ValueError
-            If teeth do not give way slice by slice.
+        TypeError, ValueError
+            Not numeric or not finite, or where the flank has no point.
         """
-        approach = self._approach(np.asarray(age, dtype=float))[:, np.newaxis]
-        return self._law.line_load(approach, np.asarray(s, dtype=float))
+        instants, u = finite_array("fraction", fraction), finite_array("position", position, "m")
+        start = instants - np.floor(instants)
+        ages = np.stack([start + k for k in range(math.ceil(self.contact_ratio))]) + self._mesh[0]
+        return self.line_load(ages, np.broadcast_to(self.slices.at(u), (*ages.shape, u.size)))
+
+    def line_load(self, age: FloatArray, s: FloatArray) -> FloatArray:
+        """As :meth:`pressure`, on slices s of lines, S + (m,) [√m], of an age counted as by `slices.ends`, S."""
+        return self._law.pressure(self._approach(age), self._lines(age), s)
 
 
 def fit_tolerances(breakpoints: tuple[float, ...]) -> FloatArray:

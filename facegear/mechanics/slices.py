@@ -70,8 +70,8 @@ class Slices:
         if np.any(beyond):
             away = abs(float(angles[beyond][0]) - self.contact.pressure_angle)
             raise ValueError(
-                f"misalignment lets the gap narrow again {away:.3g} rad beside the contact, where flanks would touch at "
-                f"a second place; {self.misalignment!r}"
+                f"misalignment lets the gap narrow again {away:.3g} rad beside the contact, where flanks would touch "
+                f"at a second place; {self.misalignment!r}"
             )
 
     @cached_property
@@ -119,6 +119,11 @@ class Slices:
         t = 0.5 * (_NODES + 1.0)
         bend = self._slope.deriv()(self.contact.pressure_angle + away[..., np.newaxis] * t)
         return np.asarray(away * np.sqrt(bend @ (0.5 * _WEIGHTS * (1.0 - t))), dtype=float)
+
+    def at(self, position: FloatArray) -> FloatArray:
+        """Slices s at coordinates u along the shaper's axis [√m], which must have a point of the flank."""
+        gap = self.contact.gap(position)
+        return np.asarray(np.sign(position - self.contact.position) * np.sqrt(np.maximum(gap, 0.0)))
 
     @cached_property
     def pressure_angle(self) -> Chebyshev:
@@ -323,10 +328,14 @@ class Slices:
         ends = self._ends(np.clip(np.asarray(age, dtype=float), 0.0, self.sweep) / self._whole)
         return ends[..., 0], ends[..., 1]
 
+    def generated(self, s: FloatArray, age: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Local pressure angles q and roll angles θs of the shaper where it makes what slices press at an age [rad]."""
+        q = np.asarray(self.pressure_angle(s))
+        return q, self.roll(q, self._line(age))
+
     def place(self, s: FloatArray, age: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Where slices are in mesh: radius r [m] and angle θ about the gear's axis [rad], from the pinion's."""
-        q = self.pressure_angle(s)
-        x, y, _ = np.moveaxis(self._region.point(q, self.roll(q, self._line(age))), -1, 0)
+        x, y, _ = np.moveaxis(self._region.point(*self.generated(s, age)), -1, 0)
         return np.hypot(x, y), np.arctan2(x, -y)
 
 
