@@ -120,9 +120,9 @@ class LoadedContact:
 
     Examples
     --------
-    >>> contact = LoadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27), torque=1000.0)
+    >>> contact = LoadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27), torque=100.0)
     >>> round(contact.contact_ratio, 4)
-    2.8551
+    2.9532
     >>> contact.mesh_stiffness([0.0, 0.5]).shape
     (2,)
     """

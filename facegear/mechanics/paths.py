@@ -90,9 +90,9 @@ class loaded_contact:  # noqa: N801 (one of three paths, the other two are funct
     Examples
     --------
     >>> from facegear.mechanics.contact import Contact
-    >>> contact = Contact(path=loaded_contact(torque=1000.0))
+    >>> contact = Contact(path=loaded_contact(torque=100.0))
     >>> round(contact.ratio(Drive(26, 130, 3.175e-3, shaper_teeth=27)), 4)
-    2.8551
+    2.9532
     """
 
     torque: float
