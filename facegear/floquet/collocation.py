@@ -39,6 +39,9 @@ PANEL_TOLERANCE = 1e-12
 # A mode that is slower than this part of the fastest is a rigid-body motion, whose frequency is known to the root of
 # rounding only; the modes of a system that is not held must not be taken for oscillations.
 _SLOWEST = 1e-5
+# Condition of the modes beyond which the square of it, in units of rounding, is more than panels may lose: as just
+# below critical damping.
+_MOST_DEPENDENT = 300.0
 # A spring that holds what hangs on nothing lets it oscillate at this part of the fastest frequency at least.
 _SOFTEST = 0.1
 # Rounds of halving before a system is refused.
@@ -112,7 +115,7 @@ class FreeModes:
         vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
         basis = np.concatenate([vectors, vectors.conj()], axis=-1)
         condition = np.max(np.linalg.cond(basis))
-        if not condition < 1e5:
+        if not condition < _MOST_DEPENDENT:
             raise UnsuitableSystemError(
                 f"the free modes are close to dependent (condition number {condition:.2g})"
             )
