@@ -173,7 +173,7 @@ class AdaptiveMagnus:
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
-        start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
+        start = max(4, collocation.within_reach(family.fastest_angle / 3.0))
         factor, further, settled = 1, self._further, False
         row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
         while True:

@@ -277,7 +277,7 @@ def _on_panels(
     if condition > _LOST:
         raise ArithmeticError(
             f"a multiplier is so close to 1 that no response is known (condition {condition:.2g}): a rigid-body "
-            "motion, or an undamped resonance"
+            "motion, which facegear.WithoutRigidMotion(model) takes out, or an undamped resonance"
         )
     state = family.inverse_scale @ np.linalg.solve(away, family.scale @ moved)
     starts = []
