@@ -317,12 +317,29 @@ def with_method(method: Method | None, compute: Callable[[Method], T], otherwise
     AdaptiveMagnus(tolerance=1e-09)
     """
     if method is not None:
+        require_method(method)
         return compute(method)
     # Asking first whether collocation applies would set it up twice, which is most of the work.
     try:
         return compute(FIRST)
     except UnsuitableSystemError:
         return compute(otherwise)
+
+
+def require_method(method: object) -> None:
+    """Refuse what is no method.
+
+    Raises
+    ------
+    TypeError
+        Saying what it is, and what would be one.
+    """
+    if isinstance(method, type) or not hasattr(method, "scaled_transition_matrices"):
+        raise TypeError(
+            "method must be a Collocation, AdaptiveMagnus, Magnus, AlignedStepwise or Stepwise of "
+            "facegear.floquet.multipliers or a Radau of facegear.floquet.radau, such as AdaptiveMagnus(), got "
+            f"{method!r}"
+        )
 
 
 def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> FloatArray:

@@ -482,7 +482,7 @@ def _smallest(function: PiecewiseChebyshev) -> float:
     return float(min(x.min() for x in (function(inside), *ends)))
 
 
-def require_system(system: object) -> None:
+def require_system(system: object, name: str = "system") -> None:
     """Refuse what is no system at one speed, such as a model.
 
     Raises
@@ -492,7 +492,7 @@ def require_system(system: object) -> None:
     """
     if not isinstance(system, PeriodicSystem):
         hint = "; its system at a speed is model.system(speed)" if hasattr(system, "system") else ""
-        raise TypeError(f"system must be a PeriodicSystem, got {named(system)}{hint}")
+        raise TypeError(f"{name} must be a PeriodicSystem, got {named(system)}{hint}")
 
 
 def named(value: object) -> str:

@@ -237,7 +237,8 @@ def steady_response(
 def _steady(system: PeriodicSystem, method: Method, allow_unstable: bool) -> SteadyResponse:
     if not isinstance(method, FollowsMotion):
         raise ValueError(
-            "method must be Collocation or Radau for a response, which know the motion along the period, got "
+            "method must be Collocation or Radau (of facegear.floquet.multipliers and facegear.floquet.radau) for a "
+            "response, which know the motion along the period, got "
             f"{method!r}"
         )
     family, instants = Family([system]), np.zeros(0)
