@@ -402,10 +402,12 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
 def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
     """Growth rate ln(max|λ|)/T0 [1/s] (2-8); the system is unstable where it is positive.
 
-    Where all motions die within a period it is known no better than max|λ|, whose error is relative to 1.
+    Where all motions die within a period it is known no better than max|λ|, whose error is relative to 1; minus
+    infinity where nothing at all is left.
     """
     radius = np.abs(multipliers(system, method)[0])
-    return float(np.log(radius) / system.period)
+    with np.errstate(divide="ignore"):
+        return float(np.log(radius) / system.period)
 
 
 def error_estimate(system: PeriodicSystem, method: Method | None = None) -> float:

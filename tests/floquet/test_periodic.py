@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series, merge_breakpoints
 
 KINKS = np.array([0.1, 0.55, 0.7])
@@ -189,6 +189,21 @@ def test_fit_keeps_constants_and_zeros():
             "loads",
         ),
         (lambda: oscillator(loads=[ONE]), TypeError, "loads"),
+        (
+            lambda: oscillator(loads=3),
+            TypeError,
+            "loads must be a sequence of ContactLoad, or \\(\\); got a int",
+        ),
+        (lambda: oscillator(loads=ContactLoad(ONE)), TypeError, "loads must be a sequence of ContactLoad"),
+        (lambda: PeriodicSystem([[1.0]], [[0.0]], [[1.0]], None, 1.0), TypeError, "loads must be a sequence"),
+        (
+            lambda: PeriodicSystem([[1.0]], [[0.0]], [[1.0]], (), 1.0, jumps=StateJump(0.5, np.eye(2))),
+            TypeError,
+            "jumps must be a sequence of StateJump",
+        ),
+        (lambda: oscillator(mass=[[1.0], [1.0, 2.0]]), TypeError, "mass must be real numbers"),
+        (lambda: oscillator(mass=np.zeros((0, 0))), ValueError, "mass must be square, at least one row"),
+        (lambda: oscillator(mass=np.ones((2, 3))), ValueError, "mass must be square"),
         (lambda: oscillator().replace_loads(mass=[1.0, 2.0]), ValueError, "mass"),
         (lambda: oscillator().fourier(0), ValueError, "order"),
         (
