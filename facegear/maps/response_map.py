@@ -94,10 +94,20 @@ def frequency_response(
     require_model(model)
     jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
-    _require_excitation(system_at(model, float(speeds[0])))
-    found = _computed([model], speeds, method, jobs, progress, cache_directory)[0]
+    loads = _excited_loads(system_at(model, float(speeds[0])))
+    found = _computed([model], speeds, loads, method, jobs, progress, cache_directory)[0]
+    _require_some(found, model, float(speeds[0]), method)
+    between = _resonances_between(model, speeds)
+    at = np.concatenate([speeds, between])
+    every = np.concatenate(
+        [found, _computed([model], between, loads, method, jobs, progress, cache_directory)[0]]
+    )
     dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, method)
-    return dataset.assign(_peaks(model, speeds, dataset, method))
+    dataset.attrs["peaks"] = (
+        "local maxima that show at the speeds, or where one of the first six harmonics of the mesh meets a natural "
+        "frequency of the mean system; none at the first and last speed"
+    )
+    return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], method))
 
 
 def response_map(
@@ -140,13 +150,15 @@ def response_map(
     given = checked_values(values)
     path = parameter_path(model, parameter)
     models = [replace_parameter(model, parameter, value) for value in given.tolist()]
-    _require_excitation(system_at(models[0], float(speeds[0])))
-    found = _computed(models, speeds, method, jobs, progress, cache_directory)
+    loads = _excited_loads(system_at(models[0], float(speeds[0])))
+    found = _computed(models, speeds, loads, method, jobs, progress, cache_directory)
+    _require_some(found, models[0], float(speeds[0]), method)
     along = {path[-1]: (path[-1], given, {"long_name": ".".join(path)})}
     return _dataset(found, (path[-1], "speed"), along | speed_coordinates(speeds), model, method)
 
 
-def _require_excitation(system: PeriodicSystem) -> None:
+def _excited_loads(system: PeriodicSystem) -> int:
+    """Return the number of loads of a system that has some, and what excites it."""
     if system.force is None and all(load.transmission_error is None for load in system.loads):
         raise ValueError(
             "model must have a force or a transmission error, or it stands still; "
@@ -154,6 +166,7 @@ def _require_excitation(system: PeriodicSystem) -> None:
         )
     if not system.loads:
         raise ValueError("model must have a load whose response is asked for; got a system without loads")
+    return len(system.loads)
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,13 +227,13 @@ def _numbers(model: Model, speed: float, method: Method | None) -> FloatArray:
 def _computed(
     models: Sequence[Model],
     speeds: FloatArray,
+    loads: int,
     method: Method | None,
     jobs: int,
     progress: bool | None,
     cache_directory: str | os.PathLike[str] | None,
 ) -> FloatArray:
     """Numbers of all models at all speeds, shape (models, speeds, loads, 10)."""
-    loads = len(models[0].system(float(speeds[0])).loads)
     tasks = [
         _Chunk(row, slice(start, start + _CHUNK), model, speeds[start : start + _CHUNK], method, loads)
         for row, model in enumerate(models)
@@ -229,10 +242,13 @@ def _computed(
     numbers = np.empty((len(models), speeds.size, loads, 10))
     for number, result in computed(tasks, "response", jobs, progress, cache_directory):
         numbers[tasks[number].row, tasks[number].place] = result
-    if np.isnan(numbers[..., 9]).all():
-        # Nowhere is a response known: what is said of the first speed is why.
-        steady_response(models[0].system(float(speeds[0])), method, allow_unstable=True)
     return numbers
+
+
+def _require_some(numbers: FloatArray, model: Model, speed: float, method: Method | None) -> None:
+    """Where no response is known at all, raise what is said of one model at one speed."""
+    if np.isnan(numbers[..., 9]).all():
+        steady_response(model.system(speed), method, allow_unstable=True)
 
 
 def _dataset(
@@ -264,25 +280,22 @@ def _dataset(
     )
 
 
-def _peaks(model: Model, speeds: FloatArray, found: xarray.Dataset, method: Method | None) -> dict[str, Any]:
-    """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled."""
+def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, method: Method | None) -> dict[str, Any]:
+    """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled.
+
+    From numbers of :func:`_numbers` at ascending speeds (S,), shape (S, loads, 10).
+    """
     from scipy.signal import find_peaks
 
-    between = _resonances_between(model, speeds)
-    at = np.concatenate([speeds, between])
-    rows = [_numbers(model, speed, method)[:, 5] for speed in between.tolist()]
-    order = np.argsort(at)
-    at, every = at[order], np.concatenate([found.force_rms.values, *(row[np.newaxis] for row in rows)])[order]
     peaks: list[tuple[float, int, float, str]] = []
-    for load in found["load"].values.tolist():
-        rms = every[:, load]
-        forces = [np.abs(found[f"force_{name}"].values[:, load]) for name in ("lowest", "highest")]
-        noise = _NOISE * float(np.nanmax(forces, initial=0.0))
+    for load in range(numbers.shape[1]):
+        rms, forces = numbers[:, load, 5], np.abs(numbers[:, load, 6:8])
+        noise = _NOISE * float(np.nan_to_num(forces).max())
         # Next to where nothing is known nobody can tell.
         known = np.flatnonzero(np.isfinite(rms))
         for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
             for i in find_peaks(rms[run], prominence=max(noise, np.finfo(float).tiny))[0].tolist():
-                speed, value = _settled(model, method, load, at[run][i - 1 : i + 2].tolist())
+                speed, value = _settled(model, method, load, speeds[run][i - 1 : i + 2].tolist())
                 response = _response(model, speed, method)
                 label = "" if response is None else resonance(response).label
                 peaks.append((speed, load, value, label))
