@@ -295,7 +295,8 @@ def _on_panels(
 
 def _to_series(panels: MotionPanels) -> FloatArray:
     """Matrix from values at the nodes of a panel to Chebyshev coefficients."""
-    return np.linalg.inv(chebyshev.chebvander(2.0 * panels.nodes - 1.0, panels.nodes.size - 1))
+    values = chebyshev.chebvander(2.0 * panels.nodes - 1.0, panels.nodes.size - 1)
+    return np.asarray(np.linalg.inv(values), dtype=float)
 
 
 def _roughly_known(system: PeriodicSystem, panels: MotionPanels) -> NDArray[np.bool_]:

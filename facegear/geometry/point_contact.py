@@ -159,7 +159,10 @@ class UnloadedContact:
         for _ in range(_HALVINGS):
             share, given = 0.5 * (possible + beyond), self.misalignment
             less = Misalignment(
-                *(share * x for x in (given.offset, given.gear_axial, given.pinion_axial, given.shaft_angle)),
+                share * given.offset,
+                share * given.gear_axial,
+                share * given.pinion_axial,
+                share * given.shaft_angle,
                 given.pivot,
             )
             possible, beyond = (share, beyond) if _touches(self.drive, less) else (possible, share)

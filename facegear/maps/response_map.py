@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -212,12 +212,14 @@ def _numbers(model: Model, speed: float, method: Method | None) -> FloatArray:
     response = _response(model, speed, method)
     if response is None:
         return np.full((len(model.system(speed).loads), 10), np.nan)
-    parts = []
-    for function in (response.contact_displacements, response.contact_forces):
+
+    def statistics(function: Callable[[FloatArray], FloatArray]) -> list[FloatArray]:
         values = function(response.instants)
         mean = response.weights @ values
         rms = np.sqrt(response.weights @ (values - mean) ** 2)
-        parts += [mean, rms, *response.extremes(lambda _, values=values: values)]
+        return [mean, rms, *response.extremes(lambda _: values)]
+
+    parts = statistics(response.contact_displacements) + statistics(response.contact_forces)
     if not response.is_stable:
         parts = [np.full_like(part, np.nan) for part in parts]
     whole = (np.full_like(parts[0], number) for number in (response.spectral_radius, response.condition))
