@@ -39,10 +39,15 @@ PANEL_TOLERANCE = 1e-12
 # A mode that is slower than this part of the fastest is a rigid-body motion, whose frequency is known to the root of
 # rounding only; the modes of a system that is not held must not be taken for oscillations.
 _SLOWEST = 1e-5
+# Condition of the modes beyond which the square of it, in units of rounding, is more than panels may lose: as just
+# below critical damping.
+_MOST_DEPENDENT = 300.0
 # A spring that holds what hangs on nothing lets it oscillate at this part of the fastest frequency at least.
 _SOFTEST = 0.1
 # Rounds of halving before a system is refused.
 _MOST_HALVINGS = 8
+# Parts of a period beyond which a motion is too fast to follow.
+_MOST_PARTS = 2**17
 # Systems share panels if they turn by at least this part of the largest angle among them in a period.
 _SHARED = 0.6
 # Entries of the largest stack of matrices of a family: as many as fit in a cache.
@@ -112,7 +117,7 @@ class FreeModes:
         vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
         basis = np.concatenate([vectors, vectors.conj()], axis=-1)
         condition = np.max(np.linalg.cond(basis))
-        if not condition < 1e5:
+        if not condition < _MOST_DEPENDENT:
             raise UnsuitableSystemError(
                 f"the free modes are close to dependent (condition number {condition:.2g})"
             )
@@ -164,8 +169,25 @@ def _last_coefficients(nodes: int) -> FloatArray:
     return np.asarray((last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T, dtype=float)
 
 
+def within_reach(parts: float) -> int:
+    """Return a number of parts of the period, rounded up, if it is one that a computer has room for.
+
+    Raises
+    ------
+    ArithmeticError
+        If there are too many, or infinitely many.
+    """
+    if not parts <= _MOST_PARTS:
+        raise ArithmeticError(
+            f"the period is too long for the fastest motion: it takes {parts:.2g} steps, more than {_MOST_PARTS}; the "
+            "stiffness over the mass must be smaller, or the period shorter"
+        )
+    return int(np.ceil(parts))
+
+
 def panel_edges(breakpoints: FloatArray, angle: float, panel_angle: float) -> FloatArray:
     """Return ends of panels: all breakpoints, and points between for a fastest motion of `angle` a period."""
+    within_reach(angle / panel_angle)
     ends = np.append(breakpoints[1:], 1.0)
     counts = np.ceil((ends - breakpoints) * angle / panel_angle).astype(int)
     pieces = [
@@ -721,7 +743,7 @@ def transition_matrices(
     order = np.argsort(-turns)
     while order.size:
         # Panels that resolve one system resolve all that turn a little less in a period.
-        panels = systems[0].breakpoints.size + int(turns[order[0]] / panel_angle)
+        panels = systems[0].breakpoints.size + within_reach(turns[order[0]] / panel_angle)
         together = order[: max(1, _ENTRIES // (panels * max(loads, size) * (loads + size)))]
         together = together[turns[together] >= _SHARED * turns[together[0]]]
         order = order[together.size :]

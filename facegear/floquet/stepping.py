@@ -59,6 +59,10 @@ def exponentials(matrices: FloatArray) -> FloatArray:
     # Squarings multiply the first term left out, norm¹³/13!: below 0.3, it adds up to less than half a unit of the last
     # place for each unit of the whole exponent, which is what rounding adds. No refinement would tell it where A is
     # constant and sub-intervals are long.
+    if not np.isfinite(norm):
+        raise ArithmeticError(
+            "state matrix is not finite: stiffness, damping or period is beyond double precision"
+        )
     squarings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / _SQUARED_FROM))))
     first = matrices / 2.0**squarings
     second = first @ first

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from facegear.floquet.labels import Combination, Kind, combination
-from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model
+from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, rigid_motions
@@ -128,7 +128,7 @@ def tongues(
     if further.ndim != 1:
         raise ValueError(f"hints must list speeds in rad/s, got {hints!r}")
     if threshold < _DRIFT:
-        _refuse_rigid_motion(model.system(high))
+        _refuse_rigid_motion(system_at(model, high))
     from tqdm.auto import tqdm
 
     # tqdm itself takes a notebook for a terminal.
@@ -171,7 +171,7 @@ def search_seconds(model: Model, speeds: ArrayLike) -> float:
     """
     low, high = ascending("speeds", speeds, "rad/s")
     motions = FrozenMotions.of(model, 1.0 / high, 1.0 / low)
-    size = 2 * model.system(high).size
+    size = 2 * system_at(model, high).size
     samples = motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES).size
     return float(samples * _SECONDS * size**_POWER)
 

@@ -27,6 +27,7 @@ from facegear.floquet.multipliers import (
 )
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.radau import Radau
 from facegear.floquet.stepping import exponentials
 from facegear.mechanics.cases import FIGURES
 
@@ -516,3 +517,16 @@ def test_a_model_is_no_system():
             TypeError, match=r"system must be a PeriodicSystem, got a Transverse; .*model\.system"
         ):
             ask(model)
+
+
+@pytest.mark.parametrize("stiffness", [1e18, 1e40, 1e300])
+@pytest.mark.parametrize("method", [None, AdaptiveMagnus(), Radau()])
+def test_a_motion_too_fast_to_follow_is_refused_before_anything_is_computed(stiffness, method):
+    """In the constant part or in a load; not a growth of 0, nor all memory there is."""
+    load = ContactLoad(PiecewiseChebyshev.constant([1.0]), stiffness)
+    for system in (
+        PeriodicSystem([[1.0]], [[0.1]], [[stiffness]], (), 2.0),
+        PeriodicSystem([[1.0]], [[0.1]], [[1.0]], (load,), 2.0),
+    ):
+        with pytest.raises(ArithmeticError, match="too long for the fastest motion: it takes"):
+            growth_rate(system, method)
