@@ -149,9 +149,11 @@ def _in_parallel(
 
     if len(tasks) == 1:
         yield _run(*tasks[0])
-    elif get_active_backend(prefer=prefer)[0].supports_return_generator:
-        work = (delayed(_run)(*task) for task in tasks)
-        # Threads share one limit: set before the first, or each would restore what another has set.
+    elif (backend := get_active_backend(prefer=prefer)[0]).supports_return_generator:
+        # Threads share one limit: set before the first, or each would restore what another has set, and looking for the
+        # libraries that it holds for takes as long as a small task.
+        here = backend.uses_threads or effective_n_jobs(jobs) == 1
+        work = (delayed(_compute if here else _run)(*task) for task in tasks)
         with threadpool_limits(limits=1):
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
@@ -166,7 +168,11 @@ def _in_parallel(
 
 
 def _run(number: int, task: Task) -> tuple[int, FloatArray]:
-    return number, _on_one_thread(task.compute)
+    return _on_one_thread(_compute, number, task)
+
+
+def _compute(number: int, task: Task) -> tuple[int, FloatArray]:
+    return number, task.compute()
 
 
 @dataclass(frozen=True)
