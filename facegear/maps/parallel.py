@@ -148,12 +148,12 @@ def _in_parallel(
     from threadpoolctl import threadpool_limits
 
     if len(tasks) == 1:
-        yield _run(*tasks[0])
+        yield _on_one_thread(_run, *tasks[0])
     elif (backend := get_active_backend(prefer=prefer)[0]).supports_return_generator:
         # Threads share one limit: set before the first, or each would restore what another has set, and looking for the
         # libraries that it holds for takes as long as a small task.
-        here = backend.uses_threads or effective_n_jobs(jobs) == 1
-        work = (delayed(_compute if here else _run)(*task) for task in tasks)
+        here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
+        work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
         with threadpool_limits(limits=1):
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
@@ -163,15 +163,11 @@ def _in_parallel(
         size = 4 * effective_n_jobs(jobs)
         for start in range(0, len(tasks), size):
             yield from Parallel(n_jobs=jobs, batch_size=1)(
-                delayed(_run)(*task) for task in tasks[start : start + size]
+                delayed(_on_one_thread)(_run, *task) for task in tasks[start : start + size]
             )
 
 
 def _run(number: int, task: Task) -> tuple[int, FloatArray]:
-    return _on_one_thread(_compute, number, task)
-
-
-def _compute(number: int, task: Task) -> tuple[int, FloatArray]:
     return number, task.compute()
 
 
