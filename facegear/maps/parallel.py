@@ -153,18 +153,22 @@ def _in_parallel(
     from joblib.parallel import get_active_backend
     from threadpoolctl import threadpool_limits
 
-    together = get_active_backend(prefer=prefer)[0].supports_return_generator
+    backend = get_active_backend(prefer=prefer)[0]
+    together = backend.supports_return_generator
     if tasks and (len(tasks) == 1 or (together and prefer == "processes")):
         # The first of them tells how long the others take.
         started = time.perf_counter()
-        yield _run(*tasks[0])
+        yield _on_one_thread(_run, *tasks[0])
         tasks = tasks[1:]
         if len(tasks) * (time.perf_counter() - started) < _WORTH_PROCESSES:
-            yield from (_run(*task) for task in tasks)
+            with threadpool_limits(limits=1):
+                yield from (_run(*task) for task in tasks)
             return
     if together:
-        work = (delayed(_run)(*task) for task in tasks)
-        # Threads share one limit: set before the first, or each would restore what another has set.
+        # Threads share one limit: set before the first, or each would restore what another has set, and looking for the
+        # libraries that it holds for takes as long as a small task.
+        here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
+        work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
         with threadpool_limits(limits=1):
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
@@ -174,12 +178,12 @@ def _in_parallel(
         size = 4 * effective_n_jobs(jobs)
         for start in range(0, len(tasks), size):
             yield from Parallel(n_jobs=jobs, batch_size=1)(
-                delayed(_run)(*task) for task in tasks[start : start + size]
+                delayed(_on_one_thread)(_run, *task) for task in tasks[start : start + size]
             )
 
 
 def _run(number: int, task: Task) -> tuple[int, FloatArray]:
-    return number, _on_one_thread(task.compute)
+    return number, task.compute()
 
 
 @dataclass(frozen=True)

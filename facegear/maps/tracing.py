@@ -129,12 +129,17 @@ def tongues(
         raise ValueError(f"hints must list speeds in rad/s, got {hints!r}")
     if threshold < _DRIFT:
         _refuse_rigid_motion(system_at(model, high))
+    from threadpoolctl import threadpool_limits
     from tqdm.auto import tqdm
 
     # tqdm itself takes a notebook for a terminal.
     shown = sys.stderr.isatty() if progress is None else progress
     about = f"tongues, about {search_seconds(model, (low, high)):.0f} s" if shown else ""
-    with tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar:
+    # Matrices are too small to share among threads, which would wait for each other.
+    with (
+        threadpool_limits(limits=1),
+        tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar,
+    ):
         curve = MultiplierCurve.of(model, low, high, method, bar.update)
         if curve.error > threshold:
             raise ArithmeticError(
@@ -143,7 +148,7 @@ def tongues(
                 "facegear.floquet.radau.Radau"
             )
         scan = scan_of(curve.live, threshold, further.tolist())
-    return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
+        return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
 
 
 def search_seconds(model: Model, speeds: ArrayLike) -> float:
