@@ -67,7 +67,8 @@ twins: environment ## write what computations take from the derivations anew
 explorer: environment ## open the live explorer in a browser (Voilà on this machine)
 	@$(PYTHON) -m voila notebooks/explorer.ipynb
 
-bench: environment ## measure the performance table
+bench: environment ## measure the performance tables, beside other packages (group `peers` of pyproject.toml)
+	@UV_PROJECT_ENVIRONMENT=.venv $(PYTHON) -m uv sync --quiet --locked --inexact --python $(PYTHON) --group peers
 	@for file in benchmarks/bench_*.py; do $(PYTHON) -m benchmarks.$$(basename $$file .py) || exit 1; done
 
 references: environment ## make the stored arrays anew and say what moved: make references [NAME=03_geometry_and_meshing]

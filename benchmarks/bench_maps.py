@@ -1,6 +1,6 @@
 """Time 200 × 200 stability maps against the dissertation's rule and general-purpose integrators.
 
-Run from the repository root: ``python -m benchmarks.bench_maps [--size 200] [--output build/benchmarks.json]``.
+Run from the repository root: ``python -m benchmarks.bench_maps [--size 200]``.
 All rows are measured in one run on one machine. The slow routes are timed on a sample of cells, spread over the map,
 and scaled to all of them; the table says how many.
 """
@@ -10,8 +10,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import platform
-import resource
 import subprocess
 import sys
 import time
@@ -19,7 +17,6 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from functools import cache, partial
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import scipy.linalg
@@ -27,6 +24,7 @@ from joblib import Parallel, delayed
 from scipy.integrate import solve_ivp
 from threadpoolctl import threadpool_limits
 
+from benchmarks.record import peak_memory, processor_name, write_record
 from benchmarks.synthetic_disk import (
     CONTACT_DAMPING,
     CONTACT_MASS,
@@ -65,16 +63,6 @@ class Row:
 
 def radius(matrix: Array) -> float:
     return float(np.abs(np.linalg.eigvals(matrix)).max())
-
-
-def processor_name() -> str:
-    """Model name of the processor, as the operating system gives it."""
-    cpuinfo = Path("/proc/cpuinfo")
-    if cpuinfo.exists():
-        for line in cpuinfo.read_text().splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
 
 
 def transverse_column(speed: float, values: Array, pinions: int, swept: str) -> Array:
@@ -166,12 +154,15 @@ def sampled_row(route: str, cells: list[tuple[PeriodicSystem, float]], run, tota
     )
 
 
-def coarsest(build: Callable[[int], Array], exact: float) -> int:
-    """Fewest sub-intervals of 32, 48, 64, 96, ... from which on the sample accuracy holds (search not timed).
+# Numbers of sub-intervals that are tried.
+SUB_INTERVALS = [count for power in range(5, 17) for count in (2**power, 3 * 2 ** (power - 1))]
+
+
+def coarsest(build: Callable[[int], Array], exact: float, counts: list[int] = SUB_INTERVALS) -> int:
+    """Smallest of some counts from which on the sample accuracy holds, or the last one (search not timed).
 
     It must hold for the next three counts too: an error that changes its sign is small by accident somewhere.
     """
-    counts = [count for power in range(5, 17) for count in (2**power, 3 * 2 ** (power - 1))]
     met: list[int] = []
     for count in counts:
         if abs(radius(build(count)) - exact) <= SAMPLE_ACCURACY:
@@ -180,7 +171,7 @@ def coarsest(build: Callable[[int], Array], exact: float) -> int:
                 return met[0]
         else:
             met.clear()
-    raise ArithmeticError(f"{counts[-1]} sub-intervals do not reach {SAMPLE_ACCURACY:.0e}")
+    return counts[-1]
 
 
 def clocked(function: Callable[[], Array]) -> tuple[Array, float, float]:
@@ -326,36 +317,15 @@ def table(rows: list[Row], size: int) -> str:
     return "\n".join(lines)
 
 
-def peak_memory() -> float:
-    """Largest resident size of this process or one of its children [MB]."""
-    unit = 1e6 if sys.platform == "darwin" else 1e3
-    return (
-        max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-        / unit
-    )
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--size", type=int, default=200, help="cells along each axis")
-    parser.add_argument("--output", type=Path, default=Path("build/benchmarks.json"))
     arguments = parser.parse_args()
     with threadpool_limits(1):
         rows = measure(arguments.size) + fresh_rows(arguments.size)
-    memory = peak_memory()
     print(table(rows, arguments.size))
-    print(f"peak memory of one process: {memory:.0f} MB")
-    arguments.output.parent.mkdir(parents=True, exist_ok=True)
-    record = {
-        "processor": processor_name(),
-        "cores": os.cpu_count(),
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "size": arguments.size,
-        "peak_memory_mb": memory,
-        "rows": [asdict(row) for row in rows],
-    }
-    arguments.output.write_text(json.dumps(record, indent=2) + "\n")
+    print(f"peak memory of one process: {peak_memory():.0f} MB")
+    write_record("maps", size=arguments.size, rows=[asdict(row) for row in rows])
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from .floquet.multipliers import multipliers as multipliers
 from .floquet.multipliers import transition_matrix as transition_matrix
 from .floquet.periodic import ContactLoad as ContactLoad
 from .floquet.periodic import PeriodicSystem as PeriodicSystem
+from .floquet.periodic import StateJump as StateJump
 from .floquet.piecewise import PiecewiseChebyshev as PiecewiseChebyshev
 from .floquet.response import steady_response as steady_response
 from .geometry.drive import Drive as Drive
@@ -56,6 +57,7 @@ __all__ = [
     "PeriodicSystem",
     "PiecewiseChebyshev",
     "SkewLine",
+    "StateJump",
     "Torsional",
     "Transverse",
     "UnloadedContact",

@@ -13,7 +13,7 @@ import xarray as xr
 from scipy.integrate import solve_ivp
 
 from facegear.floquet.labels import combination
-from facegear.floquet.models import Coordinate, Model, require_model
+from facegear.floquet.models import Coordinate, Model, require_model, system_at
 from facegear.floquet.multipliers import transition_matrix
 from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.maps.tracing import Tongue, tongues
@@ -91,7 +91,7 @@ def cell_detail(model: Model, speed: float) -> CellDetail:
     """
     require_model(model)
     speed = positive("speed", speed, "rad/s")
-    system = model.system(speed)
+    system = system_at(model, speed)
     _require_coordinates(model, system)
     values, vectors = np.linalg.eig(transition_matrix(system))
     # Of a conjugate pair rounding alone would decide.

@@ -3,9 +3,9 @@
 `periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
 `multipliers` the transition matrix by the methods of `collocation`, `stepping` and `radau`, `columns`,
 `multiplier_curves` and `sheets` the same along a parameter, along speed and along both; `eigenvalues` are those of many
-matrices, in `lockstep` where Numba is installed; `modes` has natural motions, `labels` names what is unstable; `modal`,
-`averaging`, `hsu` are the approximations. `response` has the steady motion that forces cause, along the panels of
-`motion`.
+matrices, in `lockstep` where Numba is installed, as `lockstep_exponentials` has steps of small systems; `modes` has
+natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu` are the approximations. `response` has the
+steady motion that forces cause, along the panels of `motion`.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*

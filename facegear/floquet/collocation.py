@@ -39,10 +39,15 @@ PANEL_TOLERANCE = 1e-12
 # A mode that is slower than this part of the fastest is a rigid-body motion, whose frequency is known to the root of
 # rounding only; the modes of a system that is not held must not be taken for oscillations.
 _SLOWEST = 1e-5
+# Condition of the modes beyond which the square of it, in units of rounding, is more than panels may lose: as just
+# below critical damping.
+_MOST_DEPENDENT = 300.0
 # A spring that holds what hangs on nothing lets it oscillate at this part of the fastest frequency at least.
 _SOFTEST = 0.1
 # Rounds of halving before a system is refused.
 _MOST_HALVINGS = 8
+# Parts of a period beyond which a motion is too fast to follow.
+_MOST_PARTS = 2**17
 # Systems share panels if they turn by at least this part of the largest angle among them in a period.
 _SHARED = 0.6
 # Entries of the largest stack of matrices of a family: as many as fit in a cache.
@@ -111,13 +116,8 @@ class FreeModes:
         vectors = columns.swapaxes(-1, -2)
         vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
         basis = np.concatenate([vectors, vectors.conj()], axis=-1)
-        condition = np.max(np.linalg.cond(basis))
-        if not condition < 1e5:
-            raise UnsuitableSystemError(
-                f"the free modes are close to dependent (condition number {condition:.2g})"
-            )
         # x = Re(W y) with y twice the coefficients of the pairs W c + conj(W c).
-        rows = np.asarray(2.0 * np.linalg.inv(basis)[..., :n, :], dtype=complex)
+        rows = np.asarray(2.0 * _inverse(basis)[..., :n, :], dtype=complex)
         half = replace(motions, exponents=values[oscillating].reshape(*mass.shape[:-2], n), vectors=vectors)
         return cls(
             eigenvalues=half.exponents,
@@ -142,6 +142,23 @@ class FreeModes:
         return np.concatenate([self.coordinates.real, self.coordinates.imag], axis=-2)
 
 
+def _inverse(basis: ComplexArray) -> ComplexArray:
+    """Inverse of modes as columns, (..., 2n, 2n), refused where they are close to dependent."""
+    try:
+        inverse = np.asarray(np.linalg.inv(basis), dtype=complex)
+        bound = np.max(np.linalg.norm(basis, axis=(-2, -1)) * np.linalg.norm(inverse, axis=(-2, -1)))
+    except np.linalg.LinAlgError:
+        inverse, bound = basis, np.inf
+    # Frobenius norms bound the condition number; where they do not suffice, singular values tell.
+    if not bound < _MOST_DEPENDENT:
+        condition = np.max(np.linalg.cond(basis))
+        if not condition < _MOST_DEPENDENT:
+            raise UnsuitableSystemError(
+                f"the free modes are close to dependent (condition number {condition:.2g})"
+            )
+    return inverse
+
+
 @lru_cache(maxsize=16)
 def gauss_rule(nodes: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Gauss-Legendre nodes and weights on [0, 1], and a_ij = ∫_0^{x_i} l_j, shape (nodes, nodes)."""
@@ -164,8 +181,25 @@ def _last_coefficients(nodes: int) -> FloatArray:
     return np.asarray((last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T, dtype=float)
 
 
+def within_reach(parts: float) -> int:
+    """Return a number of parts of the period, rounded up, if it is one that a computer has room for.
+
+    Raises
+    ------
+    ArithmeticError
+        If there are too many, or infinitely many.
+    """
+    if not parts <= _MOST_PARTS:
+        raise ArithmeticError(
+            f"the period is too long for the fastest motion: it takes {parts:.2g} steps, more than {_MOST_PARTS}; the "
+            "stiffness over the mass must be smaller, or the period shorter"
+        )
+    return int(np.ceil(parts))
+
+
 def panel_edges(breakpoints: FloatArray, angle: float, panel_angle: float) -> FloatArray:
     """Return ends of panels: all breakpoints, and points between for a fastest motion of `angle` a period."""
+    within_reach(angle / panel_angle)
     ends = np.append(breakpoints[1:], 1.0)
     counts = np.ceil((ends - breakpoints) * angle / panel_angle).astype(int)
     pieces = [
@@ -272,7 +306,9 @@ class Nodes:
             return found.reshape(len(found), count * nodes * p, n)
 
         def readings(by: FloatArray, factors: ComplexArray) -> ComplexArray:
-            return np.asarray((by @ factors).reshape(systems_, count, nodes, p, n), dtype=complex)
+            # Real times complex as one product of real matrices, which takes half as long.
+            pairs = by @ np.ascontiguousarray(factors).view(float)
+            return np.asarray(pairs.view(complex).reshape(systems_, count, nodes, p, n), dtype=complex)
 
         phi = values(lambda load: load.shape)
         weighted = phi
@@ -721,7 +757,7 @@ def transition_matrices(
     order = np.argsort(-turns)
     while order.size:
         # Panels that resolve one system resolve all that turn a little less in a period.
-        panels = systems[0].breakpoints.size + int(turns[order[0]] / panel_angle)
+        panels = systems[0].breakpoints.size + within_reach(turns[order[0]] / panel_angle)
         together = order[: max(1, _ENTRIES // (panels * max(loads, size) * (loads + size)))]
         together = together[turns[together] >= _SHARED * turns[together[0]]]
         order = order[together.size :]

@@ -43,17 +43,17 @@ _OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 F = TypeVar("F", bound=Callable[..., object])
 
 
-def _inner(function: F) -> F:
-    """Compile a part of :func:`eigenvalues`, with it."""
+def inner(function: F) -> F:
+    """Compile a part of a function that is called from Python, with it."""
     return cast(F, njit(**_OPTIONS)(function))
 
 
-def _outer(function: F, signature: str) -> F:
+def outer(function: F, signature: str) -> F:
     """Compile for arguments of these types at once, and keep what is compiled beside this file."""
     return cast(F, njit(signature, cache=True, nogil=True, **_OPTIONS)(function))
 
 
-@_inner
+@inner
 def _add_products(
     total: FloatArray, one: FloatArray, other: FloatArray, at: np.uint64, rows: np.uint64, n: np.uint64
 ) -> None:
@@ -74,7 +74,7 @@ def _add_products(
         at += _N
 
 
-@_inner
+@inner
 def _add_column(
     u: FloatArray,
     a: FloatArray,
@@ -92,7 +92,7 @@ def _add_column(
         i += _N
 
 
-@_inner
+@inner
 def _add_columns(
     u: FloatArray,
     a: FloatArray,
@@ -117,7 +117,7 @@ def _add_columns(
         i += _N
 
 
-@_inner
+@inner
 def _change_column(
     a: FloatArray,
     v: FloatArray,
@@ -136,7 +136,7 @@ def _change_column(
         i += _N
 
 
-@_inner
+@inner
 def _balance(a: FloatArray, size: int, n: np.uint64) -> None:
     """Scale rows and columns by powers of two until their sizes are alike."""
     d = np.uint64(size)
@@ -173,7 +173,7 @@ def _balance(a: FloatArray, size: int, n: np.uint64) -> None:
             break
 
 
-@_inner
+@inner
 def _reduce(a: FloatArray, size: int, n: np.uint64) -> None:
     """Bring matrices to Hessenberg form by reflections I - t v vᵀ from both sides."""
     d = np.uint64(size)
@@ -235,13 +235,13 @@ def _reduce(a: FloatArray, size: int, n: np.uint64) -> None:
             _change_column(a, v, u, w, j * stride, j * _N, d, n)
 
 
-@_inner
+@inner
 def _negligible(below: float, one: float, other: float, norm: float) -> bool:
     """Whether an entry below the diagonal is none, beside those of the diagonal next to it."""
     return abs(below) <= _EPS * max(abs(one) + abs(other), _FLOOR * norm)
 
 
-@_inner
+@inner
 def _find_windows(
     a: FloatArray, low: FloatArray, high_norm: FloatArray, top: np.uint64, stride: np.uint64, n: np.uint64
 ) -> None:
@@ -258,7 +258,7 @@ def _find_windows(
         at += stride + _N
 
 
-@_inner
+@inner
 def _reflections(
     f: FloatArray, a: FloatArray, state: FloatArray, row: float, at: np.uint64, n: np.uint64
 ) -> None:
@@ -288,7 +288,7 @@ def _reflections(
         a[i + _2N] = 0.0 if moved else in_r
 
 
-@_inner
+@inner
 def _reflect_rows(
     a: FloatArray, f: FloatArray, at: np.uint64, stride: np.uint64, columns: np.uint64, n: np.uint64
 ) -> None:
@@ -304,7 +304,7 @@ def _reflect_rows(
         at += stride
 
 
-@_inner
+@inner
 def _reflect_columns(
     a: FloatArray, f: FloatArray, at: np.uint64, stride: np.uint64, rows: np.uint64, n: np.uint64
 ) -> None:
@@ -322,7 +322,7 @@ def _reflect_columns(
         third += _N
 
 
-@_inner
+@inner
 def _take_pair(a: FloatArray, real: FloatArray, imag: FloatArray, h: int, lane: int) -> None:
     """Eigenvalues of the two rows that end with h, of one matrix."""
     half = (a[h - 1, h - 1, lane] - a[h, h, lane]) / 2.0
@@ -339,7 +339,7 @@ def _take_pair(a: FloatArray, real: FloatArray, imag: FloatArray, h: int, lane: 
         imag[h, lane] = -imag[h - 1, lane]
 
 
-@_inner
+@inner
 def _start_sweep(a: FloatArray, state: FloatArray, m: int, h: int, lane: int, unusual: bool) -> None:
     """First column of the double step of one matrix on its window of rows m to h."""
     # The shifts have the sum one + other and the product one * other - off.
@@ -363,7 +363,7 @@ def _start_sweep(a: FloatArray, state: FloatArray, m: int, h: int, lane: int, un
     state[4 * LANES + lane] = a[m + 1, m + 2, lane]
 
 
-@_inner
+@inner
 def _francis(
     flat: FloatArray, d: int, real: FloatArray, imag: FloatArray, converged: NDArray[np.bool_], n: np.uint64
 ) -> None:
@@ -451,4 +451,4 @@ def _eigenvalues(
                 real[start + lane, k], imag[start + lane, k] = own_real[k, lane], own_imag[k, lane]
 
 
-eigenvalues = _outer(_eigenvalues, "void(float64[:, :, ::1], float64[:, ::1], float64[:, ::1], boolean[::1])")
+eigenvalues = outer(_eigenvalues, "void(float64[:, :, ::1], float64[:, ::1], float64[:, ::1], boolean[::1])")

@@ -17,7 +17,7 @@ from typing import Any, Protocol, TypeVar, get_args, get_type_hints
 
 from numpy.typing import ArrayLike
 
-from facegear.floquet.periodic import PeriodicSystem, named, without_rigid_motion
+from facegear.floquet.periodic import PeriodicSystem, named, require_system, without_rigid_motion
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.support.types import FloatArray
 
@@ -92,6 +92,9 @@ class WithoutRigidMotion:
 
     model: Model
 
+    def __post_init__(self) -> None:
+        require_model(self.model)
+
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
         """One for each motion that is left, by number: they mix the coordinates of the model."""
@@ -100,7 +103,7 @@ class WithoutRigidMotion:
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of what is left, at a constant speed [rad/s]."""
-        return without_rigid_motion(self.model.system(speed))
+        return without_rigid_motion(system_at(self.model, speed))
 
 
 @dataclass(frozen=True)
@@ -146,6 +149,10 @@ class Excited:
             value = getattr(self, name)
             if value is not None and not isinstance(value, PiecewiseChebyshev):
                 raise TypeError(f"{name} must be a PiecewiseChebyshev or None, got {named(value)}")
+        if self.transmission_error is not None and self.transmission_error.components != 1:
+            raise ValueError(
+                f"transmission_error must have one component, got {self.transmission_error.components}"
+            )
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
@@ -158,12 +165,17 @@ class Excited:
         Raises
         ------
         TypeError, ValueError
-            If the model's loads do not take them: see :class:`facegear.floquet.periodic.ContactLoad`.
+            If the model's loads do not take them, see :class:`facegear.floquet.periodic.ContactLoad`, or there are no
+            loads.
         """
-        system = self.model.system(speed)
+        system = system_at(self.model, speed)
         if self.force is not None:
             system = dataclasses.replace(system, force=self.force)
         if self.transmission_error is not None:
+            if not system.loads:
+                raise ValueError(
+                    "transmission_error must be None for a model without loads that would feel it"
+                )
             loads = (dataclasses.replace(x, transmission_error=self.transmission_error) for x in system.loads)
             system = dataclasses.replace(system, loads=tuple(loads))
         return system
@@ -181,6 +193,19 @@ def require_model(model: object) -> None:
         raise TypeError(
             f"model must have a method system(speed), as fg.Transverse(body, load) has, got {named(model)}"
         )
+
+
+def system_at(model: Model, speed: float) -> PeriodicSystem:
+    """Return the system of a model at a speed [rad/s], and refuse one that returns something else.
+
+    Raises
+    ------
+    TypeError
+        Saying what it is.
+    """
+    system = model.system(speed)
+    require_system(system, "what model.system(speed) returns")
+    return system
 
 
 def parameter_names(model: object) -> tuple[str, ...]:
@@ -239,10 +264,9 @@ def parameter_path(model: object, name: str) -> tuple[str, ...]:
     if not matches:
         last = {other.rpartition(".")[2]: other for other in reversed(names)}
         near = difflib.get_close_matches(str(name).rpartition(".")[2], last, n=3)
-        shown = sorted(last[word] for word in near) if near else names
+        meant = f"; {' or '.join(sorted(last[word] for word in near))}?" if near else ""
         raise ValueError(
-            f"parameter must be one of {', '.join(shown)}{' or others' if near else ''} (the last part is enough), "
-            f"got {name!r}"
+            f"parameter must be one of {', '.join(names)} (the last part is enough), got {name!r}{meant}"
         )
     if len(matches) > 1:
         raise ValueError(f"parameter {name!r} could be {' or '.join(matches)}: give the dotted name")

@@ -173,7 +173,7 @@ class AdaptiveMagnus:
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
-        start = max(4, int(np.ceil(family.fastest_angle / 3.0)))
+        start = max(4, collocation.within_reach(family.fastest_angle / 3.0))
         factor, further, settled = 1, self._further, False
         row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
         while True:
@@ -317,12 +317,29 @@ def with_method(method: Method | None, compute: Callable[[Method], T], otherwise
     AdaptiveMagnus(tolerance=1e-09)
     """
     if method is not None:
+        require_method(method)
         return compute(method)
     # Asking first whether collocation applies would set it up twice, which is most of the work.
     try:
         return compute(FIRST)
     except UnsuitableSystemError:
         return compute(otherwise)
+
+
+def require_method(method: object) -> None:
+    """Refuse what is no method.
+
+    Raises
+    ------
+    TypeError
+        Saying what it is, and what would be one.
+    """
+    if isinstance(method, type) or not hasattr(method, "scaled_transition_matrices"):
+        raise TypeError(
+            "method must be a Collocation, AdaptiveMagnus, Magnus, AlignedStepwise or Stepwise of "
+            "facegear.floquet.multipliers or a Radau of facegear.floquet.radau, such as AdaptiveMagnus(), got "
+            f"{method!r}"
+        )
 
 
 def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> FloatArray:
@@ -385,10 +402,12 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
 def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
     """Growth rate ln(max|λ|)/T0 [1/s] (2-8); the system is unstable where it is positive.
 
-    Where all motions die within a period it is known no better than max|λ|, whose error is relative to 1.
+    Where all motions die within a period it is known no better than max|λ|, whose error is relative to 1; minus
+    infinity where nothing at all is left.
     """
     radius = np.abs(multipliers(system, method)[0])
-    return float(np.log(radius) / system.period)
+    with np.errstate(divide="ignore"):
+        return float(np.log(radius) / system.period)
 
 
 def error_estimate(system: PeriodicSystem, method: Method | None = None) -> float:

@@ -11,10 +11,10 @@ hang on the forces f and the transmission errors e; :mod:`facegear.floquet.respo
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -223,12 +223,17 @@ class PeriodicSystem:
     jumps: tuple[StateJump, ...] = ()
 
     def __post_init__(self) -> None:
-        size = np.shape(self.mass)[0] if np.ndim(self.mass) else 0
         for name in ("mass", "damping", "stiffness"):
-            matrix = real_array(getattr(self, name), name, 2)
-            if matrix.shape != (size, size) or size == 0:
-                raise ValueError(f"{name} must be square and as large as mass; got shape {matrix.shape}")
-            keep(self, **{name: matrix})
+            keep(self, **{name: real_array(getattr(self, name), name, 2)})
+        size = self.mass.shape[0]
+        if size == 0 or self.mass.shape[1] != size:
+            raise ValueError(f"mass must be square, at least one row and column; got shape {self.mass.shape}")
+        for name in ("damping", "stiffness"):
+            if getattr(self, name).shape != (size, size):
+                raise ValueError(
+                    f"{name} must be square and as large as mass, {(size, size)}; got shape "
+                    f"{getattr(self, name).shape}"
+                )
         if np.abs(self.mass - self.mass.T).max() > 1e-12 * np.abs(self.mass).max():
             raise ValueError("mass must be symmetric; got a non-symmetric matrix")
         try:
@@ -237,16 +242,18 @@ class PeriodicSystem:
             raise ValueError(
                 "mass must be positive definite; got a matrix with a non-positive eigenvalue"
             ) from None
-        keep(self, loads=tuple(self.loads))
+        keep(
+            self,
+            loads=_listed("loads", self.loads, ContactLoad),
+            jumps=_listed("jumps", self.jumps, StateJump),
+        )
         for number, load in enumerate(self.loads):
-            if not isinstance(load, ContactLoad):
-                raise TypeError(f"loads[{number}] must be a ContactLoad; got {type(load).__name__}")
             if load.shape.components != size:
                 raise ValueError(
                     f"loads[{number}].shape must have {size} components, one a coordinate; "
                     f"got {load.shape.components}"
                 )
-        keep(self, period=positive("period", self.period, "s"), jumps=tuple(self.jumps))
+        keep(self, period=positive("period", self.period, "s"))
         if self.force is not None and not isinstance(self.force, PiecewiseChebyshev):
             raise TypeError(f"force must be a PiecewiseChebyshev or None; got {type(self.force).__name__}")
         if self.force is not None and self.force.components != size:
@@ -254,8 +261,6 @@ class PeriodicSystem:
                 f"force must have {size} components, one a coordinate; got {self.force.components}"
             )
         for number, jump in enumerate(self.jumps):
-            if not isinstance(jump, StateJump):
-                raise TypeError(f"jumps[{number}] must be a StateJump; got {type(jump).__name__}")
             if jump.matrix.shape != (2 * size, 2 * size):
                 raise ValueError(
                     f"jumps[{number}].matrix must have shape {(2 * size, 2 * size)}, displacements and velocities; "
@@ -468,6 +473,17 @@ class PeriodicSystem:
         return replace(self, loads=loads, force=force, jumps=jumps)
 
 
+def _listed(name: str, values: Any, kind: type) -> tuple[Any, ...]:
+    """Return objects of one kind as a tuple, and refuse what is no list of them."""
+    if not isinstance(values, Iterable):
+        raise TypeError(f"{name} must be a sequence of {kind.__name__}, or (); got {named(values)}")
+    listed = tuple(values)
+    for number, value in enumerate(listed):
+        if not isinstance(value, kind):
+            raise TypeError(f"{name}[{number}] must be a {kind.__name__}; got {type(value).__name__}")
+    return listed
+
+
 def weighted_shape(load: ContactLoad, fraction: ArrayLike, side: Side = "right") -> FloatArray:
     """Return w φ of a load at fractions of the period, shape (..., n)."""
     shape = load.shape(fraction, side)
@@ -482,7 +498,7 @@ def _smallest(function: PiecewiseChebyshev) -> float:
     return float(min(x.min() for x in (function(inside), *ends)))
 
 
-def require_system(system: object) -> None:
+def require_system(system: object, name: str = "system") -> None:
     """Refuse what is no system at one speed, such as a model.
 
     Raises
@@ -492,7 +508,7 @@ def require_system(system: object) -> None:
     """
     if not isinstance(system, PeriodicSystem):
         hint = "; its system at a speed is model.system(speed)" if hasattr(system, "system") else ""
-        raise TypeError(f"system must be a PeriodicSystem, got {named(system)}{hint}")
+        raise TypeError(f"{name} must be a PeriodicSystem, got {named(system)}{hint}")
 
 
 def named(value: object) -> str:

@@ -8,8 +8,10 @@ fraction x = t / T0 of the period, and each smooth piece has its own Chebyshev s
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from inspect import signature
 from typing import Literal
 
 import numpy as np
@@ -17,13 +19,19 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import dct
 
-from facegear.support.parameters import finite, finite_array, integer_at_least, integer_within, keep
+from facegear.support.parameters import finite, finite_array, integer_at_least, integer_within, keep, one_of
 from facegear.support.types import FloatArray
 
 Side = Literal["left", "right"]
 
 #: Two breakpoints closer than this fraction of the period are one.
 SAME_INSTANT = 1e-12
+# Points of the first series tried, of degree one less.
+_FEWEST = 9
+# Evenly spaced places in [-1, 1], none a Chebyshev point, at which a series must meet its function in the end.
+_CHECKED = np.arange(-31.0, 32.0, 2.0) / 32.0
+# By so much it may miss it there, in units of the size that its last coefficients may have.
+_LEEWAY = 100.0
 
 
 def _coefficients(values: FloatArray) -> FloatArray:
@@ -98,53 +106,78 @@ class PiecewiseChebyshev:
         breakpoints : array_like, shape (pieces,)
             Ascending fractions inside [0, 1). A function smooth over the whole period takes ``[0.0]``.
         tolerance : float or array_like, shape (pieces,)
-            Size of the last coefficients relative to the largest value of the function [-].
+            Size of the last coefficients relative to the largest value of the function [-], greater than 0.
         max_degree : int
-            Highest degree tried.
+            Highest degree tried, 8 or more.
 
         Raises
         ------
-        ValueError
-            If the tail stays above the tolerance: the function has a jump or a kink inside a piece.
+        TypeError, ValueError
+            Naming the argument. If the tail stays above the tolerance, or the series away from the function by more
+            than a hundred times that at one of 32 evenly spaced fractions of the piece: the function has a jump or a
+            kink inside a piece. What is narrower than a 32nd of its piece may lie between all points and be missed.
         """
+        _require_two_arguments(function)
         edges = real_array(breakpoints, "breakpoints", 1)
         _check_breakpoints(edges)
+        allowed = _tolerances(tolerance, edges.size)
+        max_degree = integer_at_least("max_degree", max_degree, 8)
         ends = np.append(edges[1:], edges[0] + 1.0)
 
-        def sample(piece: int, count: int) -> FloatArray:
+        def sample(piece: int, local: FloatArray) -> FloatArray:
             middle, half = (ends[piece] + edges[piece]) / 2.0, (ends[piece] - edges[piece]) / 2.0
-            values = np.asarray(function(middle + half * chebyshev.chebpts1(count), piece), dtype=float)
-            values = values[:, None] if values.ndim == 1 else values
-            if values.ndim != 2 or values.shape[0] != count:
+            values = np.asarray(function(middle + half * local, piece))
+            if values.dtype.kind not in "iuf":
+                raise TypeError(
+                    f"function must return real numbers, got an array of {values.dtype} on piece {piece}"
+                )
+            values = np.asarray(values[:, None] if values.ndim == 1 else values, dtype=float)
+            if values.ndim != 2 or values.shape[0] != local.size:
                 raise ValueError(
-                    f"function must return shape ({count},) or ({count}, components) for {count} fractions; "
-                    f"got shape {values.shape} on piece {piece}"
+                    f"function must return shape ({local.size},) or ({local.size}, components) for {local.size} "
+                    f"fractions; got shape {values.shape} on piece {piece}"
                 )
             if not np.isfinite(values).all():
                 raise ValueError(f"function must be finite on piece {piece}; got a non-finite value")
             return values
 
-        allowed = np.broadcast_to(real_array(np.atleast_1d(tolerance), "tolerance", 1), edges.shape)
-        scale = max(float(np.abs(sample(piece, 9)).max()) for piece in range(edges.size))
+        # Chebyshev points to begin with, and others, which have to meet the series in the end.
+        starts = np.concatenate([chebyshev.chebpts1(_FEWEST), _CHECKED])
+        first = [sample(piece, starts) for piece in range(edges.size)]
+        components = {values.shape[1] for values in first}
+        if len(components) > 1:
+            raise ValueError(
+                f"function must return as many components on each piece; got {sorted(components)} components"
+            )
+        scale = max(float(np.abs(values).max()) for values in first)
         series = []
-        for piece in range(edges.size):
-            count = 9
+        for piece, (values, expected) in enumerate(np.split(x, [_FEWEST]) for x in first):
             while True:
-                coefficients = _coefficients(sample(piece, count))
+                count = values.shape[0]
+                coefficients = _coefficients(values)
                 scale = max(scale, float(np.abs(coefficients).max()))
                 sizes = np.abs(coefficients).max(axis=1)
                 # Three coefficients, because an even or odd function has every second one zero.
-                if sizes[-3:].max() <= allowed[piece] * scale:
-                    break
-                if count > max_degree:
+                tail, limit = float(sizes[-3:].max()), allowed[piece] * scale
+                away = np.inf
+                if tail <= limit:
+                    found = _chebyshev_basis(_CHECKED, count - 1) @ coefficients
+                    away = float(np.abs(found - expected).max())
+                    if away <= _LEEWAY * limit:
+                        break
+                if 2 * count - 2 > max_degree:
+                    what = (
+                        f"the last Chebyshev coefficients are {tail / scale:.2g} of the largest value, above"
+                    )
+                    if tail <= limit:
+                        what = f"the series is off by {away / scale:.2g} of the largest value, above a hundred times"
                     raise ValueError(
                         f"function is not smooth on piece {piece} ({edges[piece]:.6g} to {ends[piece]:.6g} "
-                        f"of the period): at degree {count - 1} the last Chebyshev coefficients are "
-                        f"{sizes[-3:].max() / scale:.2g} of the largest value, above {allowed[piece]:.2g}; "
+                        f"of the period): at degree {count - 1} {what} {allowed[piece]:.2g}; "
                         "add the breakpoint of the jump or kink inside it"
                     )
-                count = 2 * count - 1
-            kept = int(np.flatnonzero(sizes > allowed[piece] * scale / 10.0).max(initial=0)) + 1
+                values = sample(piece, chebyshev.chebpts1(2 * count - 1))
+            kept = int(np.flatnonzero(sizes > limit / 10.0).max(initial=0)) + 1
             series.append(coefficients[:kept])
         length = max(part.shape[0] for part in series)
         padded = np.stack([np.pad(part, ((0, length - part.shape[0]), (0, 0))) for part in series])
@@ -153,7 +186,10 @@ class PiecewiseChebyshev:
     @classmethod
     def constant(cls, values: ArrayLike) -> PiecewiseChebyshev:
         """Constant vector `values`, shape (components,)."""
-        return cls(np.zeros(1), np.atleast_1d(np.asarray(values, dtype=float))[None, None, :])
+        array = np.atleast_1d(finite_array("values", values))
+        if array.ndim != 1 or array.size == 0:
+            raise ValueError(f"values must be one number a component; got shape {array.shape}")
+        return cls(np.zeros(1), array[None, None, :])
 
     @property
     def components(self) -> int:
@@ -189,24 +225,25 @@ class PiecewiseChebyshev:
         -------
         array, shape (..., components)
         """
-        asked = np.asarray(fraction, dtype=float)
+        one_of("side", side, ("right", "left"))
+        asked = finite_array("fraction", fraction)
         wrapped = wrap(asked.ravel())
         nudge = SAME_INSTANT if side == "right" else -SAME_INSTANT
+        # Before the first breakpoint one is still on the last piece of the period before, number -1.
         piece = np.searchsorted(self.breakpoints, wrapped + nudge, side="right") - 1
+        offset = wrapped - self.breakpoints[piece] + (piece < 0)
+        basis = _chebyshev_basis(2.0 * offset / self.lengths[piece] - 1.0, self.degree)
         values = np.empty((wrapped.size, self.components))
-        for p in np.unique(piece):
-            chosen = piece == p
-            # Before the first breakpoint one is still on the last piece of the period before (p = -1).
-            offset = wrapped[chosen] - self.breakpoints[p]
-            offset = offset + 1.0 if p < 0 else offset
-            local = 2.0 * offset / self.lengths[p] - 1.0
-            values[chosen] = _chebyshev_basis(local, self.degree) @ self.coefficients[p]
+        order = np.argsort(piece, kind="stable")
+        for chosen in np.split(order, np.flatnonzero(np.diff(piece[order])) + 1):
+            if chosen.size:
+                values[chosen] = basis[chosen] @ self.coefficients[piece[chosen[0]]]
         return values.reshape(*asked.shape, self.components)
 
     def derivative(self, order: int = 1) -> PiecewiseChebyshev:
         """Exact derivative with respect to the fraction of the period, piece by piece (jumps left out)."""
         function = self
-        for _ in range(order):
+        for _ in range(integer_at_least("order", order, 0)):
             function = function._slope
         return function
 
@@ -376,6 +413,32 @@ def _check_breakpoints(breakpoints: FloatArray) -> None:
         raise ValueError(f"breakpoints must lie inside [0, 1), at least one; got {breakpoints.tolist()}")
     if (np.diff(breakpoints) <= SAME_INSTANT).any():
         raise ValueError(f"breakpoints must ascend and differ; got {breakpoints.tolist()}")
+
+
+def _require_two_arguments(function: object) -> None:
+    """Refuse what cannot be called with fractions and the number of a piece."""
+    fits = callable(function)
+    # Some functions written in C do not say what they take.
+    with suppress(ValueError, TypeError):
+        parameters = signature(function)  # type: ignore[arg-type]
+        try:
+            parameters.bind(None, 0)
+        except TypeError:
+            fits = False
+    if not fits:
+        raise TypeError(
+            f"function must take two arguments, fractions and number of the piece; got {function!r}"
+        )
+
+
+def _tolerances(tolerance: ArrayLike, pieces: int) -> FloatArray:
+    """Return one tolerance a piece."""
+    array = finite_array("tolerance", tolerance)
+    if array.shape not in ((), (1,), (pieces,)):
+        raise ValueError(f"tolerance must be one number or {pieces}, one a piece; got shape {array.shape}")
+    if not (array > 0.0).all():
+        raise ValueError(f"tolerance must be greater than 0; got {float(array.min())!r}")
+    return np.broadcast_to(array, (pieces,))
 
 
 def real_array(values: ArrayLike, name: str, dimensions: int) -> FloatArray:

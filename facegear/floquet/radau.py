@@ -22,6 +22,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
+from facegear.floquet.collocation import within_reach
 from facegear.floquet.motion import MotionPanels, known_forces
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import SAME_INSTANT, merge_breakpoints
@@ -157,7 +158,7 @@ def _graded_edges(family: Family, panel_angle: float, dead: float) -> FloatArray
         # Where every motion has died, one panel spans the rest.
         fastest = [np.abs(rates[death >= place]).max(initial=0.0) for place in places[1:]]
         angle = np.append(0.0, np.cumsum(fastest * np.diff(places)))
-        count = max(1, int(np.ceil(angle[-1] / panel_angle)))
+        count = max(1, within_reach(angle[-1] / panel_angle))
         parts.append(start + np.interp(np.linspace(0.0, angle[-1], count + 1)[:-1], angle, places))
     return np.append(np.concatenate(parts), 1.0)
 

@@ -9,22 +9,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+from scipy.special import spherical_jn
 
 from facegear.floquet.motion import FollowsMotion, MotionPanels, known_errors, known_forces
 from facegear.floquet.multipliers import Method, with_method
-from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.floquet.piecewise import PiecewiseChebyshev, Side
 from facegear.floquet.radau import Radau
 from facegear.floquet.stepping import Family
+from facegear.support.parameters import finite_array, integer_at_least
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest part of the last coefficients of the motion along a panel, at which the panel is halved.
 _TOLERANCE = 1e-12
+# The same of forces, transmission errors, shapes and weights, with twice as many nodes in means and extremes.
+_KNOWN_TOLERANCE = 1e-6
 # Rounds of halving after which a motion is given up.
 _MOST_ROUNDS = 12
 # A spectral radius beyond 1 by more than this is unstable and no rounding.
@@ -71,7 +75,7 @@ class SteadyResponse:
 
     def accelerations(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Accelerations q̈ from the equations of motion at fractions of the period, shape (..., n)."""
-        x, system = np.asarray(fraction, dtype=float), self.system
+        x, system = finite_array("fraction", fraction), self.system
         forces = known_forces(system, x, side)[..., np.newaxis]
         forces -= system.damping_matrix(x, side) @ self.velocities(x, side)[..., np.newaxis]
         forces -= system.stiffness_matrix(x, side) @ self.displacements(x, side)[..., np.newaxis]
@@ -95,7 +99,7 @@ class SteadyResponse:
 
     def _contact(self, fraction: ArrayLike, side: Side) -> FloatArray:
         """u, u̇, ü of each load, shape (3, ..., p)."""
-        x, period = np.asarray(fraction, dtype=float), self.system.period
+        x, period = finite_array("fraction", fraction), self.system.period
         q, v, a = (part(x, side) for part in (self.displacements, self.velocities, self.accelerations))
         found = -known_errors(self.system, x, side)
         for number, load in enumerate(self.system.loads):
@@ -110,19 +114,57 @@ class SteadyResponse:
 
     def mean(self, function: Callable[[FloatArray], FloatArray]) -> FloatArray:
         """Mean over the period of a function of the fractions, (m,) to (m, ...), such as a square of the motion."""
-        values = function(self.instants)
-        return np.asarray(np.tensordot(self.weights, values, axes=1), dtype=float)
+        return np.asarray(np.tensordot(self.weights, self._values(function), axes=1), dtype=float)
+
+    def extremes(self, function: Callable[[FloatArray], FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest value over the period of a function of the fractions, (m,) to (m, ...), each (...).
+
+        The function must be as smooth on the panels as the motion is: contact displacements and forces are.
+        """
+        values = self._values(function)
+        panels = values.reshape(self.state.breakpoints.size, -1, *values.shape[1:])
+        fine = np.moveaxis(np.tensordot(_finer(panels.shape[1]), panels, axes=(1, 1)), 0, 1)
+        # The vertex of the parabola through a sample and its neighbours, which are evenly spaced in the angle.
+        before, middle, after = fine[:, :-2], fine[:, 1:-1], fine[:, 2:]
+        slope, bend = (after - before) / 2.0, before - 2.0 * middle + after
+        inside = np.abs(slope) < np.abs(bend)
+        vertex = middle - np.where(inside, slope**2 / np.where(inside, 2.0 * bend, 1.0), 0.0)
+        every = np.concatenate([fine, vertex], axis=1)
+        return every.min(axis=(0, 1)), every.max(axis=(0, 1))
 
     def harmonics(self, order: int) -> ComplexArray:
         """Complex amplitudes X_s of the state, X = Re Σ X_s e^{isωt}, s = 0 ... order, shape (order + 1, 2n)."""
-        turning = np.exp(-2j * np.pi * np.outer(np.arange(order + 1), self.instants))
-        amplitudes = 2.0 * (turning * self.weights) @ self.state(self.instants)
-        amplitudes[0] /= 2.0
-        return np.asarray(amplitudes, dtype=complex)
+        s = np.arange(integer_at_least("order", order, 0) + 1)[:, np.newaxis]
+        lengths, degrees = self.state.lengths, np.arange(self.state.degree + 1)
+        nodes, weights = legendre.leggauss(degrees.size)
+        series = ((degrees + 0.5)[:, np.newaxis] * legendre.legvander(nodes, degrees[-1]).T * weights) @ (
+            chebyshev.chebvander(nodes, degrees[-1]) @ self.state.coefficients
+        )
+        # The integral of P_d(z) e^{−iaz} over [−1, 1] is 2 (−i)^d j_d(a), for any order.
+        turning = lengths * np.exp(-2j * np.pi * s * (self.state.breakpoints + lengths / 2.0))
+        amplitudes = sum(
+            (2.0 * (-1j) ** d * turning * spherical_jn(d, np.pi * s * lengths)) @ series[:, d]
+            for d in degrees.tolist()
+        )
+        found = np.asarray(amplitudes, dtype=complex)
+        found[0] /= 2.0
+        return found
+
+    def _values(self, function: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Values of a function at the instants, (m, ...)."""
+        if not callable(function):
+            raise TypeError(f"function must be a function of fractions of the period, got {function!r}")
+        values = finite_array("function", function(self.instants))
+        if values.shape[:1] != self.instants.shape:
+            raise ValueError(
+                f"function must return shape ({self.instants.size}, ...) for {self.instants.size} fractions, got shape "
+                f"{values.shape}"
+            )
+        return values
 
     @property
     def instants(self) -> FloatArray:
-        """Gauss nodes of all panels, fractions of the period: dense enough for means, and nearly for extremes."""
+        """Gauss nodes of all panels, fractions of the period, ascending: dense enough for means."""
         return self._rule[0]
 
     @property
@@ -136,6 +178,16 @@ class SteadyResponse:
         lengths = self.state.lengths[:, np.newaxis]
         instants = self.state.breakpoints[:, np.newaxis] + lengths * (1.0 + x) / 2.0
         return instants.ravel(), (lengths * weights / 2.0).ravel()
+
+
+@lru_cache(maxsize=8)
+def _finer(count: int) -> FloatArray:
+    """Matrix from values at Gauss nodes of a panel to those at eight times as many places, its ends among them."""
+    nodes, weights = legendre.leggauss(count)
+    degrees = np.arange(count)
+    places = -np.cos(np.linspace(0.0, np.pi, 8 * count + 1))
+    to_series = (degrees + 0.5)[:, np.newaxis] * legendre.legvander(nodes, count - 1).T * weights
+    return np.asarray(legendre.legvander(places, count - 1) @ to_series, dtype=float)
 
 
 def steady_response(
@@ -161,6 +213,8 @@ def steady_response(
     ------
     ValueError
         If the system is unstable and that is not asked for, or the method knows the end of the period only.
+    TypeError
+        If an argument is of the wrong kind.
     ArithmeticError
         If a multiplier is so close to 1 that no motion repeats itself, or none that double precision could tell; or if
         panels do not resolve the motion.
@@ -174,19 +228,24 @@ def steady_response(
     array([[0.5],
            [0.5]])
     """
+    require_system(system)
+    if not isinstance(allow_unstable, bool | np.bool_):
+        raise TypeError(f"allow_unstable must be True or False, got {allow_unstable!r}")
     return with_method(method, lambda chosen: _steady(system, chosen, allow_unstable), _OTHERWISE)
 
 
 def _steady(system: PeriodicSystem, method: Method, allow_unstable: bool) -> SteadyResponse:
     if not isinstance(method, FollowsMotion):
         raise ValueError(
-            "method must be Collocation or Radau for a response, which know the motion along the period, got "
+            "method must be Collocation or Radau (of facegear.floquet.multipliers and facegear.floquet.radau) for a "
+            "response, which know the motion along the period, got "
             f"{method!r}"
         )
     family, instants = Family([system]), np.zeros(0)
     for _ in range(_MOST_ROUNDS):
         panels = method.motion_panels(system, instants.tolist())
         response, unresolved = _on_panels(family, panels, allow_unstable)
+        unresolved = unresolved | _roughly_known(system, panels)
         if not unresolved.any():
             return response
         middles = (panels.edges[:-1] + panels.edges[1:]) / 2.0
@@ -196,7 +255,7 @@ def _steady(system: PeriodicSystem, method: Method, allow_unstable: bool) -> Ste
 
 def _on_panels(
     family: Family, panels: MotionPanels, allow_unstable: bool
-) -> tuple[SteadyResponse, FloatArray]:
+) -> tuple[SteadyResponse, NDArray[np.bool_]]:
     """Steady response on some panels, and which of them are too long for it."""
     (system,), size = family.systems, 2 * family.size
     whole, moved = np.eye(size), np.zeros(size)
@@ -219,7 +278,7 @@ def _on_panels(
     if condition > _LOST:
         raise ArithmeticError(
             f"a multiplier is so close to 1 that no response is known (condition {condition:.2g}): a rigid-body "
-            "motion, or an undamped resonance"
+            "motion, which facegear.WithoutRigidMotion(model) takes out, or an undamped resonance"
         )
     state = family.inverse_scale @ np.linalg.solve(away, family.scale @ moved)
     starts = []
@@ -227,13 +286,38 @@ def _on_panels(
         starts.append(jump @ state)
         state = step @ starts[-1] + offset
     inside = panels.inside(np.array(starts))
-    coefficients = (
-        np.linalg.inv(chebyshev.chebvander(2.0 * panels.nodes - 1.0, panels.nodes.size - 1)) @ inside
-    )
+    coefficients = _to_series(panels) @ inside
     response = SteadyResponse(system, PiecewiseChebyshev(panels.edges[:-1], coefficients), radius, condition)
     sizes = np.abs(coefficients @ family.scale.T)
     unresolved = sizes[:, -2:].max(axis=(1, 2)) > _TOLERANCE * sizes.max()
     return response, unresolved
+
+
+def _to_series(panels: MotionPanels) -> FloatArray:
+    """Matrix from values at the nodes of a panel to Chebyshev coefficients."""
+    values = chebyshev.chebvander(2.0 * panels.nodes - 1.0, panels.nodes.size - 1)
+    return np.asarray(np.linalg.inv(values), dtype=float)
+
+
+def _roughly_known(system: PeriodicSystem, panels: MotionPanels) -> NDArray[np.bool_]:
+    """Panels on which what is given, forces, transmission errors, shapes and weights, is not resolved.
+
+    A load too weak to move the system does not show in the state.
+    """
+    given = {system.force: None}
+    for load in system.loads:
+        given |= dict.fromkeys((load.shape, load.weight, load.transmission_error))
+    starts, lengths = panels.edges[:-1, np.newaxis], np.diff(panels.edges)[:, np.newaxis]
+    instants, last = starts + lengths * panels.nodes, _to_series(panels)[-2:]
+    rough = np.zeros(starts.size, dtype=bool)
+    for function in given:
+        if function is not None and function.degree > 0:
+            # A node at the end of a panel belongs to it.
+            values = function(instants)
+            values[:, -1] = function(instants[:, -1], "left")
+            tails = np.abs(last @ values).max(axis=(1, 2))
+            rough |= tails > _KNOWN_TOLERANCE * function.largest
+    return rough
 
 
 def _jumps(system: PeriodicSystem, starts: FloatArray) -> list[FloatArray]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cache, cached_property
+from types import ModuleType
 
 import numpy as np
 
@@ -17,8 +18,13 @@ _SQUARED_FROM = 0.3
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB, and small stacks in cache.
 _STACK_ENTRIES = 500_000
 
+# Fewer matrices than this are not worth another library, and larger ones keep BLAS busy.
+_FEWEST = 32
+_COMPILED_SIZES = range(2, 13, 2)
+
 StateMatrices = Callable[[FloatArray], FloatArray]
-Exponents = Callable[[FloatArray, FloatArray, StateMatrices], FloatArray]
+# Starts and lengths of sub-intervals (m,) and the state matrices at fractions, to the steps (V, m, 2n, 2n).
+Steps = Callable[[FloatArray, FloatArray, StateMatrices], FloatArray]
 
 
 def aligned_edges(breakpoints: FloatArray, sub_intervals: int, factor: int = 1) -> FloatArray:
@@ -35,17 +41,23 @@ def aligned_edges(breakpoints: FloatArray, sub_intervals: int, factor: int = 1) 
 
 
 def midpoint(start: FloatArray, length: FloatArray, state: StateMatrices) -> FloatArray:
-    """Exponent h A(midpoint) of each sub-interval (2-9)."""
-    return np.asarray(state(start + length / 2.0) * length[:, None, None], dtype=float)
+    """Exponential of h A(midpoint) for each sub-interval (2-9)."""
+    return exponentials(state(start + length / 2.0) * length[:, None, None])
 
 
 def gauss_magnus(start: FloatArray, length: FloatArray, state: StateMatrices) -> FloatArray:
-    """Fourth-order Magnus exponent h (A₁+A₂)/2 − √3/12 h² [A₁, A₂] of each sub-interval, two Gauss nodes."""
+    """Exponential of h (A₁+A₂)/2 − √3/12 h² [A₁, A₂] for each sub-interval: fourth order, two Gauss nodes."""
     offset = np.sqrt(3.0) / 6.0
-    first = state(start + (0.5 - offset) * length) * length[:, None, None]
-    second = state(start + (0.5 + offset) * length) * length[:, None, None]
+    first, second = (state(start + place * length) for place in (0.5 - offset, 0.5 + offset))
+    if (compiled := _lockstep(first)) is not None:
+        steps = np.empty_like(first)
+        lengths = np.tile(length, first.shape[0])
+        stacks = (x.reshape(-1, *x.shape[-2:]) for x in (first, second))
+        compiled.magnus_steps(*stacks, lengths, steps.reshape(-1, *steps.shape[-2:]), _SQUARED_FROM)
+        return steps
+    first, second = first * length[:, None, None], second * length[:, None, None]
     commutator = first @ second - second @ first
-    return np.asarray((first + second) / 2.0 - (np.sqrt(3.0) / 12.0) * commutator, dtype=float)
+    return exponentials((first + second) / 2.0 - (np.sqrt(3.0) / 12.0) * commutator)
 
 
 def exponentials(matrices: FloatArray) -> FloatArray:
@@ -53,12 +65,45 @@ def exponentials(matrices: FloatArray) -> FloatArray:
 
     Taylor polynomial of degree 12 in five products (Paterson and Stockmeyer), scaling and squaring. For the tens of
     thousands of small matrices of a map several times faster than scipy.linalg.expm, which the tests compare it
-    with.
+    with, and several times more where :mod:`facegear.floquet.lockstep_exponentials` can be compiled.
     """
+    if (compiled := _lockstep(matrices)) is not None:
+        results = np.empty(matrices.shape)
+        stacks = (
+            np.ascontiguousarray(x, dtype=float).reshape(-1, *x.shape[-2:]) for x in (matrices, results)
+        )
+        compiled.exponentials(*stacks, _SQUARED_FROM)
+        return results
+    return _exponentials(matrices)
+
+
+def _lockstep(matrices: FloatArray) -> ModuleType | None:
+    """Return the compiled code where it is there and pays for a stack of matrices (..., d, d)."""
+    size = matrices.shape[-1]
+    pays = matrices.size >= _FEWEST * size**2 and size in _COMPILED_SIZES
+    return _compiled() if pays else None
+
+
+@cache
+def _compiled() -> ModuleType | None:
+    """Return the compiled code, or None where there is no Numba for this NumPy, or no place to keep its work."""
+    try:
+        from facegear.floquet import lockstep_exponentials
+    except (ImportError, RuntimeError):
+        return None
+    return lockstep_exponentials
+
+
+def _exponentials(matrices: FloatArray) -> FloatArray:
+    """Exponentials of a stack of matrices by NumPy, squared as often as the largest of them asks for."""
     norm = float(np.abs(matrices).sum(axis=-2).max())
     # Squarings multiply the first term left out, norm¹³/13!: below 0.3, it adds up to less than half a unit of the last
     # place for each unit of the whole exponent, which is what rounding adds. No refinement would tell it where A is
     # constant and sub-intervals are long.
+    if not np.isfinite(norm):
+        raise ArithmeticError(
+            "state matrix is not finite: stiffness, damping or period is beyond double precision"
+        )
     squarings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / _SQUARED_FROM))))
     first = matrices / 2.0**squarings
     second = first @ first
@@ -219,8 +264,8 @@ class Family:
         state[..., n:, n:] = left @ damping @ back
         return state
 
-    def product(self, edges: FloatArray, exponents: Exponents) -> FloatArray:
-        """Product of the exponentials over the sub-intervals between `edges`, jumps put in, (V, 2n, 2n)."""
+    def product(self, edges: FloatArray, method: Steps) -> FloatArray:
+        """Product of the steps over the sub-intervals between `edges`, jumps put in, (V, 2n, 2n)."""
         size = 2 * self.size
         chunk = max(1, _STACK_ENTRIES // (len(self.systems) * size**2))
         total = np.broadcast_to(np.eye(size), (len(self.systems), size, size))
@@ -229,7 +274,7 @@ class Family:
             part = slice(begin, begin + chunk)
             # A motion that grows beyond double precision shows as an entry that is not finite.
             with np.errstate(over="ignore", invalid="ignore"):
-                steps = exponentials(exponents(start[part], length[part], self.state_matrices))
+                steps = method(start[part], length[part], self.state_matrices)
                 self._put_in_jumps(steps, start[part])
                 total = chain(steps) @ total
         return np.asarray(total)
@@ -249,7 +294,7 @@ class Family:
         edges = aligned_edges(self.breakpoints, fewest)
         start, length = edges[:-1], np.diff(edges)
         with np.errstate(over="ignore", invalid="ignore"):
-            steps = exponentials(midpoint(start, length, self.state_matrices))
+            steps = midpoint(start, length, self.state_matrices)
             self._put_in_jumps(steps, start)
         sizes = np.zeros(steps.shape[:2])
         for number, jumps in enumerate(self._scaled_jumps):

@@ -171,7 +171,9 @@ class Drive:
             raise ValueError(
                 f"{name} needs contact along lines, of a shaper with as many teeth as the pinion "
                 f"({self.pinion_teeth}); "
-                f"with shaper_teeth={self.shaper_teeth} contact is at a point: UnloadedContact has it"
+                f"with shaper_teeth={self.shaper_teeth} contact is at a point: UnloadedContact has it, and for a model "
+                'Contact(path=point_contact, sharing="mean") or Contact(path=loaded_contact(torque)) with '
+                "facegear.mechanics.paths"
             )
 
     # --- circles and angles of pinion and shaper ------------------------------------------------------------

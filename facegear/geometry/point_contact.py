@@ -26,11 +26,13 @@ from scipy.special import elliprd, elliprf
 from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive, involute
 from facegear.geometry.kinematics import PairStates, TimedPairs
-from facegear.support.parameters import finite, finite_array, keep, nonnegative, positive
+from facegear.support.parameters import finite, finite_array, keep, nonnegative, positive, within
 from facegear.support.types import FloatArray
 
 # Local pressure angles between which contact is looked for [rad], and into how many parts.
 _STEEPEST, _PARTS = 1.5, 600
+# Halvings of a misalignment that leaves no contact, to say how much of it would.
+_HALVINGS = 20
 
 
 @dataclass(frozen=True)
@@ -135,26 +137,49 @@ class UnloadedContact:
                 f"drive.shaper_teeth must exceed pinion_teeth={self.drive.pinion_teeth} for contact at a point; with "
                 "as many teeth it is along lines"
             )
-        lowest, highest = self._rolls
-        if lowest >= highest:
-            raise ValueError(
-                f"misalignment leaves no contact on the flank: at −y_p = {1e3 * self._radius_of(lowest):.3f} mm it is "
-                f"{self._beyond(lowest)}; {self.misalignment!r}"
+        fault = self._fault()
+        if fault is not None:
+            raise ValueError(f"misalignment leaves no {fault}; {self.misalignment!r}{self._window()}")
+
+    def _fault(self) -> str | None:
+        """Say what the misalignment leaves none of, if it does."""
+        if not self._rising:
+            return (
+                "normal of the flank that touches the pinion's base circle: its teeth and those of the gear do not "
+                "meet"
             )
+        lowest, highest = self._rolls
+        if lowest < highest:
+            return None
+        return f"contact on the flank: at −y_p = {1e3 * self._radius_of(lowest):.3f} mm it is {self._beyond(lowest)}"
+
+    def _window(self) -> str:
+        """How much of the misalignment would leave contact, as an end of a message."""
+        possible, beyond = 0.0, 1.0
+        for _ in range(_HALVINGS):
+            share, given = 0.5 * (possible + beyond), self.misalignment
+            less = Misalignment(
+                share * given.offset,
+                share * given.gear_axial,
+                share * given.pinion_axial,
+                share * given.shaft_angle,
+                given.pivot,
+            )
+            possible, beyond = (share, beyond) if _touches(self.drive, less) else (possible, share)
+        return f" ({possible:.2g} of it would leave some)" if possible > 0.0 else ""
 
     # --- where ------------------------------------------------------------------------------------------------
 
     @cached_property
     def pressure_angle(self) -> float:
         """Local pressure angle q of the contact [rad], the same all through the mesh."""
-        rising = [q for q in self.roots if self.residual(q + 1e-6) > self.residual(q - 1e-6)]
-        if not rising:
-            raise ValueError(
-                "misalignment leaves no normal of the flank that touches the pinion's base circle: its teeth and those "
-                f"of the gear do not meet; {self.misalignment!r}"
-            )
         # Of several the one next to the nominal pressure angle.
-        return min(rising, key=lambda q: abs(q - self.drive.pressure_angle))
+        return min(self._rising, key=lambda q: abs(q - self.drive.pressure_angle))
+
+    @cached_property
+    def _rising(self) -> tuple[float, ...]:
+        """Those of the roots where flanks touch from outside."""
+        return tuple(q for q in self.roots if self.residual(q + 1e-6) > self.residual(q - 1e-6))
 
     @cached_property
     def roots(self) -> tuple[float, ...]:
@@ -164,7 +189,8 @@ class UnloadedContact:
         """
         angles = np.linspace(-_STEEPEST, _STEEPEST, _PARTS + 1)
         values = self.residual(angles)
-        change = np.flatnonzero(np.sign(values[:-1]) != np.sign(values[1:]))
+        # Not a number where the gear cannot turn a normal square to the pinion: no change of sign.
+        change = np.flatnonzero(values[:-1] * values[1:] <= 0.0)
         return tuple(
             float(brentq(self.residual, angles[i], angles[i + 1], xtol=1e-16, rtol=8.9e-16)) for i in change
         )
@@ -332,13 +358,19 @@ class UnloadedContact:
         Parameters
         ----------
         roll : float
-            θs of the shaper there [rad], see :attr:`rolls`.
+            θs of the shaper there [rad], between the two :attr:`rolls`.
 
         Returns
         -------
         ndarray, shape (2,)
             The smaller one is that along the face, nearly.
+
+        Raises
+        ------
+        TypeError, ValueError
+            `roll` is not a number, or not on the path.
         """
+        roll = within("roll", roll, *self._rolls, "rad")
         return np.asarray(np.linalg.eigvalsh(self._curvature_tensor(roll)), dtype=float)
 
     @property
@@ -388,11 +420,18 @@ class UnloadedContact:
         Raises
         ------
         TypeError, ValueError
-            If an argument is not a number greater than 0.
+            If an argument is not a number greater than 0, or the ellipse would be longer than the gear.
         """
         force, modulus = positive("force", force, "N"), positive("modulus", modulus, "Pa")
         smaller, larger = self.principal_curvatures.tolist()
-        return _hertz(smaller, larger, force, modulus)
+        ellipse = _hertz(smaller, larger, force, modulus)
+        if ellipse.long > self.drive.outer_radius:
+            raise ValueError(
+                f"modulus must be in Pa (some 1.1e11 for steel on steel) and force in N; with modulus={modulus!r} and "
+                f"force={force!r} the contact ellipse would have a semi-axis of {ellipse.long:.3g} m, more than the "
+                "gear's radius"
+            )
+        return ellipse
 
     def marking_band(self, depth: float) -> tuple[float, float]:
         """Find the band along the face where the gap is at most the thickness of marking compound.
@@ -514,10 +553,10 @@ def window(drive: Drive, error: str, misalignment: Misalignment = ALIGNED) -> tu
 
     def holds(value: float) -> bool:
         try:
-            UnloadedContact(drive, replace(misalignment, **{error: value}))
+            given = replace(misalignment, **{error: value})
         except ValueError:
             return False
-        return True
+        return _touches(drive, given)
 
     ends = []
     for sense in (-1.0, 1.0):
@@ -529,6 +568,13 @@ def window(drive: Drive, error: str, misalignment: Misalignment = ALIGNED) -> tu
             inside, outside = (middle, outside) if holds(start + sense * middle) else (inside, middle)
         ends.append(start + sense * inside)
     return ends[0], ends[1]
+
+
+def _touches(drive: Drive, misalignment: Misalignment) -> bool:
+    """Whether a misalignment leaves contact, without the message that says why it does not."""
+    contact = object.__new__(UnloadedContact)
+    keep(contact, drive=drive, misalignment=misalignment)
+    return contact._fault() is None
 
 
 def _normal(q: ArrayLike) -> FloatArray:

@@ -11,6 +11,7 @@ import io
 import os
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +23,9 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
 from facegear.support.types import FloatArray
+
+# Seconds of work from which on processes are started, which by itself takes a few.
+_WORTH_PROCESSES = 8.0
 
 Workers = Literal["processes", "threads"]
 T = TypeVar("T")
@@ -73,6 +77,8 @@ def computed(
     """
     from tqdm.auto import tqdm
 
+    if cache_directory is not None and not isinstance(cache_directory, str | os.PathLike):
+        raise TypeError(f"cache_directory must be a path or None, got {cache_directory!r}")
     store = None if cache_directory is None else _Store(Path(cache_directory))
     waiting = []
     # tqdm itself takes a notebook for a terminal.
@@ -142,16 +148,27 @@ def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
 def _in_parallel(
     tasks: Sequence[tuple[int, Task]], jobs: int, prefer: Workers
 ) -> Iterator[tuple[int, FloatArray]]:
-    """Run tasks where joblib says; a single one is not worth another process."""
+    """Run tasks where joblib says; few and small ones are not worth another process."""
     from joblib import Parallel, delayed, effective_n_jobs
     from joblib.parallel import get_active_backend
     from threadpoolctl import threadpool_limits
 
-    if len(tasks) == 1:
-        yield _run(*tasks[0])
-    elif get_active_backend(prefer=prefer)[0].supports_return_generator:
-        work = (delayed(_run)(*task) for task in tasks)
-        # Threads share one limit: set before the first, or each would restore what another has set.
+    backend = get_active_backend(prefer=prefer)[0]
+    together = backend.supports_return_generator
+    if tasks and (len(tasks) == 1 or (together and prefer == "processes")):
+        # The first of them tells how long the others take.
+        started = time.perf_counter()
+        yield _on_one_thread(_run, *tasks[0])
+        tasks = tasks[1:]
+        if len(tasks) * (time.perf_counter() - started) < _WORTH_PROCESSES:
+            with threadpool_limits(limits=1):
+                yield from (_run(*task) for task in tasks)
+            return
+    if together:
+        # Threads share one limit: set before the first, or each would restore what another has set, and looking for the
+        # libraries that it holds for takes as long as a small task.
+        here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
+        work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
         with threadpool_limits(limits=1):
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
@@ -161,12 +178,12 @@ def _in_parallel(
         size = 4 * effective_n_jobs(jobs)
         for start in range(0, len(tasks), size):
             yield from Parallel(n_jobs=jobs, batch_size=1)(
-                delayed(_run)(*task) for task in tasks[start : start + size]
+                delayed(_on_one_thread)(_run, *task) for task in tasks[start : start + size]
             )
 
 
 def _run(number: int, task: Task) -> tuple[int, FloatArray]:
-    return number, _on_one_thread(task.compute)
+    return number, task.compute()
 
 
 @dataclass(frozen=True)

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.labels import resonance
-from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model
+from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
+from facegear.floquet.modes import mean_matrices, natural_exponents
 from facegear.floquet.multipliers import Method
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.response import SteadyResponse, steady_response
 from facegear.maps.parallel import computed, parts_of
-from facegear.maps.peaks import largest_between
-from facegear.maps.stability_map import checked_speeds, speed_coordinates
-from facegear.support.parameters import finite_array, number_of_workers
+from facegear.maps.stability_map import checked_speeds, checked_values, speed_coordinates
+from facegear.support.parameters import number_of_workers
 from facegear.support.types import FloatArray
 
 if TYPE_CHECKING:
@@ -29,8 +32,12 @@ _CHUNK = 16
 # What is said of the displacement and of the force of each load, in the order of the results.
 _STATISTICS = ("mean", "rms", "lowest", "highest")
 _QUANTITIES = {"displacement": "u of the load", "force": "force of the load"}
-# Part of the distance of neighbouring speeds to which the speed of a peak is found.
-_RESOLUTION = 1e-4
+# Part of its speed to which that of a peak is found: the square of what this is of its width is missing in its height.
+_RESOLUTION = 1e-8
+# Harmonics of the mesh that are looked for between speeds.
+_HARMONICS = 6
+# Part of the largest force that is no peak, but rounding.
+_NOISE = 1e-10
 
 
 def frequency_response(
@@ -61,12 +68,17 @@ def frequency_response(
         Along "speed" and "load", of the displacement u of each load and of its force, in the units of the model: mean
         over the period, rms of what varies, lowest and highest value. Along "speed": `spectral_radius`, `condition`
         (:class:`facegear.floquet.response.SteadyResponse`). Not a number where the model is unstable at that speed, or
-        no response is known. Along "peak": speed, load, rms of the force and label of every local maximum of that rms.
+        no response is known. Along "peak": speed, load, rms of the force and label of the local maxima of that rms
+        that show at the speeds, or where a natural frequency of the mean system meets one of the first six harmonics
+        of the mesh between speeds too far apart to show it. Narrower peaks from elsewhere may be missed, and the first
+        and last speed are none.
 
     Raises
     ------
     TypeError, ValueError
         Naming the argument.
+    ArithmeticError
+        If no response is known at any speed, saying why: a rigid-body motion, for example.
 
     Examples
     --------
@@ -82,10 +94,20 @@ def frequency_response(
     require_model(model)
     jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
-    _require_excitation(model.system(float(speeds[0])))
-    found = _computed([model], speeds, method, jobs, progress, cache_directory)[0]
+    loads = _excited_loads(system_at(model, float(speeds[0])))
+    found = _computed([model], speeds, loads, method, jobs, progress, cache_directory)[0]
+    _require_some(found, model, float(speeds[0]), method)
+    between = _resonances_between(model, speeds)
+    at = np.concatenate([speeds, between])
+    every = np.concatenate(
+        [found, _computed([model], between, loads, method, jobs, progress, cache_directory)[0]]
+    )
     dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, method)
-    return dataset.assign(_peaks(model, speeds, dataset, method))
+    dataset.attrs["peaks"] = (
+        "local maxima that show at the speeds, or where one of the first six harmonics of the mesh meets a natural "
+        "frequency of the mean system; none at the first and last speed"
+    )
+    return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], method))
 
 
 def response_map(
@@ -119,22 +141,24 @@ def response_map(
     ------
     TypeError, ValueError
         Naming the argument.
+    ArithmeticError
+        As for :func:`frequency_response`.
     """
     require_model(model)
     jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
-    given = finite_array("values", values)
-    if given.ndim != 1 or given.size == 0:
-        raise ValueError(f"values must list at least one value of the parameter, got shape {given.shape}")
+    given = checked_values(values)
     path = parameter_path(model, parameter)
     models = [replace_parameter(model, parameter, value) for value in given.tolist()]
-    _require_excitation(models[0].system(float(speeds[0])))
-    found = _computed(models, speeds, method, jobs, progress, cache_directory)
+    loads = _excited_loads(system_at(models[0], float(speeds[0])))
+    found = _computed(models, speeds, loads, method, jobs, progress, cache_directory)
+    _require_some(found, models[0], float(speeds[0]), method)
     along = {path[-1]: (path[-1], given, {"long_name": ".".join(path)})}
     return _dataset(found, (path[-1], "speed"), along | speed_coordinates(speeds), model, method)
 
 
-def _require_excitation(system: Any) -> None:
+def _excited_loads(system: PeriodicSystem) -> int:
+    """Return the number of loads of a system that has some, and what excites it."""
     if system.force is None and all(load.transmission_error is None for load in system.loads):
         raise ValueError(
             "model must have a force or a transmission error, or it stands still; "
@@ -142,6 +166,7 @@ def _require_excitation(system: Any) -> None:
         )
     if not system.loads:
         raise ValueError("model must have a load whose response is asked for; got a system without loads")
+    return len(system.loads)
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +178,7 @@ class _Chunk:
     model: Model
     speeds: FloatArray
     method: Method | None
+    loads: int
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
@@ -162,7 +188,15 @@ class _Chunk:
 
     def compute(self) -> FloatArray:
         """Return numbers of each speed, shape (speeds, loads, 10)."""
-        return np.stack([_numbers(self.model, speed, self.method) for speed in self.speeds.tolist()])
+        rows = []
+        for speed in self.speeds.tolist():
+            rows.append(_numbers(self.model, speed, self.method))
+            if len(rows[-1]) != self.loads:
+                raise ValueError(
+                    f"model must have as many loads at all speeds and values, {self.loads} as at the first; got "
+                    f"{len(rows[-1])} at {speed:.6g} rad/s"
+                )
+        return np.stack(rows)
 
 
 def _response(model: Model, speed: float, method: Method | None) -> SteadyResponse | None:
@@ -178,15 +212,14 @@ def _numbers(model: Model, speed: float, method: Method | None) -> FloatArray:
     response = _response(model, speed, method)
     if response is None:
         return np.full((len(model.system(speed).loads), 10), np.nan)
-    x = response.instants
-    parts = []
-    for function in (response.contact_displacements, response.contact_forces):
-        values = function(x)
+
+    def statistics(function: Callable[[FloatArray], FloatArray]) -> list[FloatArray]:
+        values = function(response.instants)
         mean = response.weights @ values
         rms = np.sqrt(response.weights @ (values - mean) ** 2)
-        ends = [function(response.state.breakpoints, side) for side in ("left", "right")]
-        every = np.concatenate([values, *ends])
-        parts += [mean, rms, every.min(axis=0), every.max(axis=0)]
+        return [mean, rms, *response.extremes(lambda _: values)]
+
+    parts = statistics(response.contact_displacements) + statistics(response.contact_forces)
     if not response.is_stable:
         parts = [np.full_like(part, np.nan) for part in parts]
     whole = (np.full_like(parts[0], number) for number in (response.spectral_radius, response.condition))
@@ -196,6 +229,7 @@ def _numbers(model: Model, speed: float, method: Method | None) -> FloatArray:
 def _computed(
     models: Sequence[Model],
     speeds: FloatArray,
+    loads: int,
     method: Method | None,
     jobs: int,
     progress: bool | None,
@@ -203,15 +237,20 @@ def _computed(
 ) -> FloatArray:
     """Numbers of all models at all speeds, shape (models, speeds, loads, 10)."""
     tasks = [
-        _Chunk(row, slice(start, start + _CHUNK), model, speeds[start : start + _CHUNK], method)
+        _Chunk(row, slice(start, start + _CHUNK), model, speeds[start : start + _CHUNK], method, loads)
         for row, model in enumerate(models)
         for start in range(0, speeds.size, _CHUNK)
     ]
-    loads = len(models[0].system(float(speeds[0])).loads)
     numbers = np.empty((len(models), speeds.size, loads, 10))
     for number, result in computed(tasks, "response", jobs, progress, cache_directory):
         numbers[tasks[number].row, tasks[number].place] = result
     return numbers
+
+
+def _require_some(numbers: FloatArray, model: Model, speed: float, method: Method | None) -> None:
+    """Where no response is known at all, raise what is said of one model at one speed."""
+    if np.isnan(numbers[..., 9]).all():
+        steady_response(model.system(speed), method, allow_unstable=True)
 
 
 def _dataset(
@@ -243,28 +282,34 @@ def _dataset(
     )
 
 
-def _peaks(model: Model, speeds: FloatArray, found: xarray.Dataset, method: Method | None) -> dict[str, Any]:
-    """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled."""
+def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, method: Method | None) -> dict[str, Any]:
+    """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled.
+
+    From numbers of :func:`_numbers` at ascending speeds (S,), shape (S, loads, 10).
+    """
+    from scipy.signal import find_peaks
+
     peaks: list[tuple[float, int, float, str]] = []
-    for load in found["load"].values.tolist():
-        rms = found.force_rms.sel(load=load).values
-        for i in range(1, speeds.size - 1):
-            if not (rms[i] > rms[i - 1] and rms[i] >= rms[i + 1]):
-                continue
-
-            def height(speed: float, load: int = load) -> float:
-                return float(np.nan_to_num(_numbers(model, speed, method)[load, 5]))
-
-            low, high = float(speeds[i - 1]), float(speeds[i + 1])
-            speed, value = largest_between(height, low, high, _RESOLUTION * (high - low))
-            response = _response(model, speed, method)
-            label = "" if response is None else resonance(response).label
-            peaks.append((speed, load, value, label))
+    for load in range(numbers.shape[1]):
+        rms, forces = numbers[:, load, 5], np.abs(numbers[:, load, 6:8])
+        noise = _NOISE * float(np.nan_to_num(forces).max())
+        # Next to where nothing is known nobody can tell.
+        known = np.flatnonzero(np.isfinite(rms))
+        for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+            for i in find_peaks(rms[run], prominence=max(noise, np.finfo(float).tiny))[0].tolist():
+                speed, value = _settled(model, method, load, speeds[run][i - 1 : i + 2].tolist())
+                response = _response(model, speed, method)
+                label = "" if response is None else resonance(response).label
+                peaks.append((speed, load, value, label))
     peaks.sort()
     columns = [list(column) for column in zip(*peaks, strict=True)] if peaks else [[], [], [], []]
-    at, loads, values, labels = columns
+    places, loads, values, labels = columns
     return {
-        "peak_speed": ("peak", np.array(at, dtype=float), {"units": "rad/s", "long_name": "speed of a peak"}),
+        "peak_speed": (
+            "peak",
+            np.array(places, dtype=float),
+            {"units": "rad/s", "long_name": "speed of a peak"},
+        ),
         "peak_load": ("peak", np.array(loads, dtype=int), {"long_name": "load"}),
         "peak_force_rms": (
             "peak",
@@ -277,3 +322,43 @@ def _peaks(model: Model, speeds: FloatArray, found: xarray.Dataset, method: Meth
             {"long_name": "number of the mode / harmonic of the mesh"},
         ),
     }
+
+
+def _settled(model: Model, method: Method | None, load: int, bracket: list[float]) -> tuple[float, float]:
+    """Speed and rms of a load's force at a peak that lies between the ends of a bracket of three speeds."""
+
+    @cache
+    def depth(speed: float) -> float:
+        return -float(np.nan_to_num(_numbers(model, speed, method)[load, 5]))
+
+    if depth(bracket[1]) < min(depth(bracket[0]), depth(bracket[2])):
+        best = minimize_scalar(depth, bracket=tuple(bracket), method="brent", options={"xtol": _RESOLUTION})
+        return float(best.x), -float(best.fun)
+    return bracket[1], -depth(bracket[1])
+
+
+def _resonances_between(model: Model, speeds: FloatArray) -> FloatArray:
+    """Speeds at which a natural frequency meets a harmonic of the mesh, if none of those given is near enough to tell.
+
+    Near enough is the half width of the resonance, the decay of the natural motion over its frequency.
+    """
+
+    def detuned(speed: float) -> tuple[FloatArray, FloatArray]:
+        """Frequencies less each harmonic [rad/s], ascending, and decays, shapes (harmonics, n) and (n,)."""
+        system = model.system(speed)
+        exponents = natural_exponents(*mean_matrices(system))
+        exponents = exponents[np.argsort(exponents.imag)][system.size :]
+        harmonics = 2.0 * np.pi / system.period * np.arange(1, _HARMONICS + 1)
+        return exponents.imag - harmonics[:, np.newaxis], -exponents.real
+
+    found = []
+    ends = [detuned(speed) for speed in speeds.tolist()]
+    for low, high, (first, decay), (last, _) in zip(speeds, speeds[1:], ends, ends[1:], strict=False):
+        narrow = (first > 0.0) & (last < 0.0) & (np.abs(decay) < 0.5 * (first - last))
+        for harmonic, mode in np.argwhere(narrow).tolist():
+
+            def away(speed: float, harmonic: int = harmonic, mode: int = mode) -> float:
+                return float(detuned(speed)[0][harmonic, mode])
+
+            found.append(brentq(away, low, high, rtol=_RESOLUTION))
+    return np.unique(np.array(found, dtype=float))

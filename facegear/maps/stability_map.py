@@ -34,7 +34,14 @@ from facegear.floquet.columns import (
     family_matrices,
 )
 from facegear.floquet.eigenvalues import spectral_radii
-from facegear.floquet.models import Model, is_whole_number, parameter_path, replace_at, require_model
+from facegear.floquet.models import (
+    Model,
+    is_whole_number,
+    parameter_path,
+    replace_at,
+    require_model,
+    system_at,
+)
 from facegear.floquet.multiplier_curves import FrozenMotions, degree_between
 from facegear.floquet.multipliers import (
     Method,
@@ -121,11 +128,11 @@ def stability_map(
     """
     require_model(model)
     speeds = checked_speeds(speeds)
-    values = _checked_values(values)
+    values = checked_values(values)
     jobs = number_of_workers("jobs", jobs)
     name = parameter_path(model, parameter)[-1]
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
-    first = [model.system(float(speeds[0])) for model in sweep.models]
+    first = [system_at(model, float(speeds[0])) for model in sweep.models]
     loads = sweep.load_parameters(first)
     radii = np.empty((values.size, speeds.size))
     # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
@@ -179,7 +186,7 @@ def checked_speeds(speeds: ArrayLike) -> FloatArray:
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"speeds must list at least one speed in rad/s, got shape {array.shape}")
     if array.min() <= 0.0:
-        raise ValueError(f"speeds must be greater than 0 rad/s, got {array.min()!r}")
+        raise ValueError(f"speeds must be greater than 0 rad/s, got {float(array.min())!r}")
     if (np.diff(array) <= 0.0).any():
         raise ValueError("speeds must ascend strictly, got equal or descending neighbours")
     return array
@@ -193,7 +200,8 @@ def speed_coordinates(speeds: FloatArray) -> dict[str, Any]:
     }
 
 
-def _checked_values(values: ArrayLike) -> FloatArray:
+def checked_values(values: ArrayLike) -> FloatArray:
+    """Check that values of a parameter are finite and differ, and return them; errors as in :func:`checked_speeds`."""
     array = finite_array("values", values)
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"values must list at least one value of the parameter, got shape {array.shape}")

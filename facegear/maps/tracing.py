@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from facegear.floquet.labels import Combination, Kind, combination
-from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model
+from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, rigid_motions
@@ -128,13 +128,18 @@ def tongues(
     if further.ndim != 1:
         raise ValueError(f"hints must list speeds in rad/s, got {hints!r}")
     if threshold < _DRIFT:
-        _refuse_rigid_motion(model.system(high))
+        _refuse_rigid_motion(system_at(model, high))
+    from threadpoolctl import threadpool_limits
     from tqdm.auto import tqdm
 
     # tqdm itself takes a notebook for a terminal.
     shown = sys.stderr.isatty() if progress is None else progress
     about = f"tongues, about {search_seconds(model, (low, high)):.0f} s" if shown else ""
-    with tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar:
+    # Matrices are too small to share among threads, which would wait for each other.
+    with (
+        threadpool_limits(limits=1),
+        tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar,
+    ):
         curve = MultiplierCurve.of(model, low, high, method, bar.update)
         if curve.error > threshold:
             raise ArithmeticError(
@@ -143,7 +148,7 @@ def tongues(
                 "facegear.floquet.radau.Radau"
             )
         scan = scan_of(curve.live, threshold, further.tolist())
-    return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
+        return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
 
 
 def search_seconds(model: Model, speeds: ArrayLike) -> float:
@@ -171,7 +176,7 @@ def search_seconds(model: Model, speeds: ArrayLike) -> float:
     """
     low, high = ascending("speeds", speeds, "rad/s")
     motions = FrozenMotions.of(model, 1.0 / high, 1.0 / low)
-    size = 2 * model.system(high).size
+    size = 2 * system_at(model, high).size
     samples = motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES).size
     return float(samples * _SECONDS * size**_POWER)
 

@@ -1,5 +1,6 @@
 """Loads of every kind through every method: weights, masses with kicks, jumps of the state, transformed functions."""
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -130,6 +131,14 @@ def test_a_jump_of_the_state_by_hand():
     system = PeriodicSystem([[1.0]], [[0.0]], [[1.0]], (), 1.5 * np.pi, jumps=(StateJump(0.5, quarter),))
     for method in (*METHODS, Magnus(8), AlignedStepwise(8)):
         np.testing.assert_allclose(transition_matrix(system, method), -np.eye(2), atol=1e-11)
+
+
+def test_nothing_is_left_of_a_motion_that_is_stopped():
+    """A growth of minus infinity, without a warning."""
+    stopped = replace(ONE, jumps=(StateJump(0.5, np.zeros((2, 2))),))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert growth_rate(stopped) == -np.inf
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from facegear.floquet import stepping
 from facegear.floquet.multipliers import (
     FIRST,
     GENERAL,
@@ -27,7 +28,8 @@ from facegear.floquet.multipliers import (
 )
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
-from facegear.floquet.stepping import exponentials
+from facegear.floquet.radau import Radau
+from facegear.floquet.stepping import exponentials, gauss_magnus
 from facegear.mechanics.cases import FIGURES
 
 ONE = PiecewiseChebyshev.constant([1.0])
@@ -443,6 +445,26 @@ def test_batched_exponentials_against_scipy_one_by_one(seed, size, norm):
         assert np.abs(got - exact).max() <= 1e-12 * max(1.0, norm) * max(np.abs(exact).max(), 1.0)
 
 
+@pytest.mark.parametrize("size", [2, 6, 8, 12])
+@pytest.mark.parametrize("count", [32, 45])
+def test_compiled_steps_are_those_of_numpy(size, count, monkeypatch):
+    """Stiff and slow ones beside each other, in full groups and in one that is not full."""
+    rng = np.random.default_rng(size)
+    sizes = np.geomspace(1e-3, 40.0, count)[:, None, None] / size
+    ends = [sizes * rng.normal(size=(count, size, size)) for _ in range(2)]
+    found, start, length = [], np.zeros(count), np.full(count, 0.7)
+    for compiled in (stepping._compiled(), None):
+        monkeypatch.setattr(stepping, "_compiled", lambda compiled=compiled: compiled)
+        first, second = (
+            exponentials(ends[0]),
+            gauss_magnus(start, length, lambda x: ends[int(x[0] > 0.35)][None]),
+        )
+        found.append((first, second[0]))
+    for own, other in zip(*found, strict=True):
+        scale = np.maximum(np.abs(other).max(axis=(1, 2)), 1.0)
+        assert (np.abs(own - other).max(axis=(1, 2)) <= 1e-11 * scale).all()
+
+
 def test_the_error_is_estimated_for_the_default_method():
     system = mathieu(1.0, 0.1)
     assert 0.0 < error_estimate(system) == pytest.approx(error_estimate(system, Collocation()), rel=1e-6)
@@ -516,3 +538,16 @@ def test_a_model_is_no_system():
             TypeError, match=r"system must be a PeriodicSystem, got a Transverse; .*model\.system"
         ):
             ask(model)
+
+
+@pytest.mark.parametrize("stiffness", [1e18, 1e40, 1e300])
+@pytest.mark.parametrize("method", [None, AdaptiveMagnus(), Radau()])
+def test_a_motion_too_fast_to_follow_is_refused_before_anything_is_computed(stiffness, method):
+    """In the constant part or in a load; not a growth of 0, nor all memory there is."""
+    load = ContactLoad(PiecewiseChebyshev.constant([1.0]), stiffness)
+    for system in (
+        PeriodicSystem([[1.0]], [[0.1]], [[stiffness]], (), 2.0),
+        PeriodicSystem([[1.0]], [[0.1]], [[1.0]], (load,), 2.0),
+    ):
+        with pytest.raises(ArithmeticError, match="too long for the fastest motion: it takes"):
+            growth_rate(system, method)

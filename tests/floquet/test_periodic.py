@@ -1,12 +1,14 @@
 """Shape vectors on smooth pieces, loads, assembled matrices and their Fourier series."""
 
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series, merge_breakpoints
 
 KINKS = np.array([0.1, 0.55, 0.7])
@@ -72,6 +74,48 @@ def test_fit_refuses_a_hidden_kink():
         PiecewiseChebyshev.fit(lambda x, _: np.abs(x - 0.3141), [0.0])
 
 
+def bump(x):
+    return 1.0 + np.exp(-(((x - 0.6) / 0.01) ** 2))
+
+
+def test_fit_sees_what_lies_between_its_first_points():
+    """A pulse is refused; a narrow bump and T16, zero at all points of T8's rule, take a higher degree."""
+    with pytest.raises(ValueError, match="not smooth on piece 0"):
+        PiecewiseChebyshev.fit(lambda x, _: 1.0 + 0.5 * ((x > 0.55) & (x < 0.62)), [0.0])
+    with pytest.raises(ValueError, match="not smooth on piece 0"):
+        PiecewiseChebyshev.fit(lambda x, _: bump(x), [0.0])
+    x = np.linspace(0.0, 1.0, 1001)[1:-1]
+    fitted = PiecewiseChebyshev.fit(lambda x, _: bump(x), [0.0], max_degree=1024)
+    np.testing.assert_allclose(fitted(x)[:, 0], bump(x), atol=1e-12)
+    fitted = PiecewiseChebyshev.fit(lambda x, _: np.cos(16.0 * np.arccos(2.0 * x - 1.0)), [0.0])
+    np.testing.assert_allclose(fitted(x)[:, 0], np.cos(16.0 * np.arccos(2.0 * x - 1.0)), atol=1e-12)
+
+
+def test_fit_asks_for_each_piece_once_where_its_first_points_do():
+    asked = []
+
+    def line(x, piece):
+        asked.append(piece)
+        return np.stack([x, 1.0 - x], axis=-1)
+
+    PiecewiseChebyshev.fit(line, KINKS)
+    assert asked == list(range(len(KINKS)))
+
+
+def test_a_value_takes_no_longer_with_many_pieces():
+    """Each point is looked at once, not once a piece."""
+    pieces = 2000
+    edges = np.arange(pieces) / pieces + 1e-4
+    function = PiecewiseChebyshev(edges, np.stack([edges, np.ones(pieces)], axis=1)[:, :, None])
+    x = np.random.default_rng(0).random(20_000)
+    started = time.process_time()
+    values = function(x)
+    assert time.process_time() - started < 1.0
+    number = np.floor((x - 1e-4) * pieces).astype(int)
+    local = 2.0 * ((x - 1e-4) * pieces - number) - 1.0
+    np.testing.assert_allclose(values[:, 0], edges[number] + local, atol=1e-9)
+
+
 def test_fit_keeps_constants_and_zeros():
     assert PiecewiseChebyshev.fit(lambda x, _: 0.0 * x, [0.0])(0.4) == pytest.approx(0.0, abs=0.0)
     assert PiecewiseChebyshev.fit(lambda x, _: 0.0 * x + 2.0, [0.2])(0.4) == pytest.approx(2.0, abs=1e-15)
@@ -86,6 +130,39 @@ def test_fit_keeps_constants_and_zeros():
         (lambda: PiecewiseChebyshev.fit(lambda x, p: x * np.nan, [0.0]), ValueError, "finite"),
         (lambda: PiecewiseChebyshev.fit(lambda x, p: np.ones(3), [0.0]), ValueError, "shape"),
         (lambda: PiecewiseChebyshev(np.zeros(1), np.ones((2, 3, 1))), ValueError, "coefficients"),
+        (lambda: PiecewiseChebyshev.fit(lambda x, p: np.exp(1j * x), [0.0]), TypeError, "real numbers"),
+        (lambda: PiecewiseChebyshev.fit(3.0, [0.0]), TypeError, "function must take two arguments"),
+        (lambda: PiecewiseChebyshev.fit(lambda x: x, [0.0]), TypeError, "function must take two arguments"),
+        (lambda: PiecewiseChebyshev.fit(on_piece, KINKS, max_degree="a"), TypeError, "max_degree must be"),
+        (lambda: PiecewiseChebyshev.fit(on_piece, KINKS, max_degree=None), TypeError, "max_degree must be"),
+        (
+            lambda: PiecewiseChebyshev.fit(triangle, [0.0, 0.3], tolerance=[1e-9] * 3),
+            ValueError,
+            "or 2, one a piece",
+        ),
+        (
+            lambda: PiecewiseChebyshev.fit(triangle, [0.0, 0.3], tolerance=-1),
+            ValueError,
+            "tolerance must be greater",
+        ),
+        (
+            lambda: PiecewiseChebyshev.fit(lambda x, p: np.ones((x.size, 1 + p)), [0.0, 0.3]),
+            ValueError,
+            "as many components on each piece",
+        ),
+        (lambda: PiecewiseChebyshev.constant([1 + 2j]), TypeError, "values must be real"),
+        (
+            lambda: PiecewiseChebyshev.constant([[1.0, 2.0]]),
+            ValueError,
+            "values must be one number a component",
+        ),
+        (lambda: PiecewiseChebyshev.constant("3"), TypeError, "values must be real"),
+        (lambda: PiecewiseChebyshev.constant([True]), TypeError, "values must be real"),
+        (lambda: ONE(0.3, "middle"), ValueError, "side must be 'right' or 'left'"),
+        (lambda: ONE("a"), TypeError, "fraction must be real"),
+        (lambda: ONE(np.nan), ValueError, "fraction must be finite"),
+        (lambda: ONE.derivative(-1), ValueError, "order must be at least 0"),
+        (lambda: ONE.derivative(1.0), TypeError, "order must be an integer"),
         (lambda: ContactLoad(ONE, stiffness=-1.0), ValueError, "stiffness"),
         (lambda: ContactLoad(ONE, damping=np.nan), ValueError, "damping"),
         (lambda: ContactLoad(ONE, mass="1"), TypeError, "mass"),
@@ -112,6 +189,21 @@ def test_fit_keeps_constants_and_zeros():
             "loads",
         ),
         (lambda: oscillator(loads=[ONE]), TypeError, "loads"),
+        (
+            lambda: oscillator(loads=3),
+            TypeError,
+            "loads must be a sequence of ContactLoad, or \\(\\); got a int",
+        ),
+        (lambda: oscillator(loads=ContactLoad(ONE)), TypeError, "loads must be a sequence of ContactLoad"),
+        (lambda: PeriodicSystem([[1.0]], [[0.0]], [[1.0]], None, 1.0), TypeError, "loads must be a sequence"),
+        (
+            lambda: PeriodicSystem([[1.0]], [[0.0]], [[1.0]], (), 1.0, jumps=StateJump(0.5, np.eye(2))),
+            TypeError,
+            "jumps must be a sequence of StateJump",
+        ),
+        (lambda: oscillator(mass=[[1.0], [1.0, 2.0]]), TypeError, "mass must be real numbers"),
+        (lambda: oscillator(mass=np.zeros((0, 0))), ValueError, "mass must be square, at least one row"),
+        (lambda: oscillator(mass=np.ones((2, 3))), ValueError, "mass must be square"),
         (lambda: oscillator().replace_loads(mass=[1.0, 2.0]), ValueError, "mass"),
         (lambda: oscillator().fourier(0), ValueError, "order"),
         (

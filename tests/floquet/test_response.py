@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear.floquet import collocation
+from facegear.floquet.collocation import UnsuitableSystemError
 from facegear.floquet.labels import Resonance, resonance
 from facegear.floquet.models import Excited
 from facegear.floquet.multipliers import AdaptiveMagnus, Collocation, growth_rate
@@ -250,3 +251,76 @@ def test_two_modes_are_told_apart():
     )
     assert resonance(steady_response(replace(system, period=2.0 * np.pi / 3.0))) == Resonance(2, 1)
     assert resonance(steady_response(replace(system, stiffness=np.diag([1.0, 30.0])))) == Resonance(1, 1)
+
+
+def test_harmonics_of_any_order_are_those_of_the_motion():
+    """A cosine has one, whatever is asked for: no other comes back as its alias."""
+    found = steady_response(oscillator(force=wave(0.0, 1.0))).harmonics(400)
+    assert np.abs(found[2:]).max() < 1e-12 * np.abs(found[1]).max()
+    # Against an independent quadrature, under a force that jumps.
+    saw = PiecewiseChebyshev.fit(lambda x, _: x - 0.5, [0.0])
+    response = steady_response(oscillator(force=saw))
+    x = (np.arange(2**15) + 0.5) / 2**15
+    q = response.displacements(x)[:, 0]
+    for s in (0, 7, 60):
+        expected = (1.0 if s == 0 else 2.0) * (q * np.exp(-2j * np.pi * s * x)).mean()
+        assert response.harmonics(60)[s, 0] == pytest.approx(expected, abs=1e-10)
+
+
+def test_statistics_of_a_load_too_weak_to_move_the_system():
+    """Its transmission error is resolved although the state does not feel it."""
+    error = PiecewiseChebyshev.fit(
+        lambda x, _: np.cos(126 * np.pi * x) + np.cos(130 * np.pi * x), [0.0], max_degree=512
+    )
+    load = ContactLoad(ONE, 1e-10, transmission_error=error)
+    response = steady_response(oscillator(loads=(load,), force=wave(0.3)))
+    square = response.mean(lambda x: (response.contact_displacements(x)[:, 0] - 0.15) ** 2)
+    assert square == pytest.approx(1.0, rel=1e-8)
+    lowest, highest = response.extremes(response.contact_displacements)
+    np.testing.assert_allclose([*lowest, *highest], [0.15 - 2.0, 0.15 + 2.0], atol=1e-4)
+
+
+@pytest.mark.parametrize("below", [1e-3, 1e-6, 1e-9])
+def test_just_below_critical_damping(below):
+    """Free modes are nearly one: whatever is chosen loses no digits, and at rest is at rest."""
+    system = oscillator(2.0 - below, 1.0, force=wave(1.0), period=2.0)
+    assert np.abs(steady_response(system).displacements([0.0, 0.3]) - 1.0).max() < 1e-11
+    with pytest.raises(UnsuitableSystemError, match="close to dependent"):
+        steady_response(oscillator(2.0 - 1e-6, 1.0, force=wave(1.0), period=2.0), Collocation())
+
+
+@settings(deadline=None, max_examples=20)
+@given(phase=st.floats(0.0, 1.0), part=st.floats(-0.5, 0.5))
+def test_extremes_between_the_instants(phase, part):
+    """A weak load has u = −e, a cosine and a part of the next one, highest at its top."""
+    error = wave(0.0, 1.0, part).shift(phase)
+    response = steady_response(oscillator(loads=(ContactLoad(ONE, 1e-12, transmission_error=error),)))
+    x = np.linspace(0.0, 1.0, 200_001)
+    exact = -(np.cos(2.0 * np.pi * x) + part * np.cos(4.0 * np.pi * x))
+    lowest, highest = response.extremes(response.contact_displacements)
+    np.testing.assert_allclose([*lowest, *highest], [exact.min(), exact.max()], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda r: r.harmonics(-1), ValueError, "order must be at least 0"),
+        (lambda r: r.harmonics("a"), TypeError, "order must be an integer"),
+        (lambda r: r.harmonics(2.5), TypeError, "order must be an integer"),
+        (lambda r: r.mean(3.0), TypeError, "function must be a function of fractions"),
+        (lambda r: r.mean(lambda x: 1.0), ValueError, r"function must return shape \("),
+        (lambda r: r.displacements("a"), TypeError, "fraction must be real"),
+        (lambda r: r.accelerations("a"), TypeError, "fraction must be real"),
+        (lambda r: r.contact_forces("a"), TypeError, "fraction must be real"),
+        (
+            lambda r: steady_response(r.system, allow_unstable="no"),
+            TypeError,
+            "allow_unstable must be True or",
+        ),
+        (lambda r: steady_response(Mathieu(depth=0.1)), TypeError, "system must be a PeriodicSystem"),
+    ],
+)
+def test_bad_input_names_the_parameter(call, error, message):
+    response = steady_response(oscillator(force=wave(1.0)))
+    with pytest.raises(error, match=message):
+        call(response)

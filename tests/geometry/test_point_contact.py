@@ -1,6 +1,7 @@
 """Contact at a point against a full tooth contact analysis, closed forms and Hertz; what is refused."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,9 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.point_contact import Misalignment, PointPath, UnloadedContact, window
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.plate import Body
+from facegear.mechanics.transverse import Transverse
+from facegear.support.parameters import MeshLoad
 
 CASE_ONE = Drive(26, 130, 3.175e-3, shaper_teeth=27)
 OBLIQUE = Drive(26, 130, 3.175e-3, shaft_angle=math.radians(75.0), shaper_teeth=28)
@@ -353,6 +357,22 @@ def test_solids_of_pinion_and_gear_touch_where_contact_says():
         (lambda: UnloadedContact(CASE_ONE).gap(0.1), "position must be at least"),
         (lambda: UnloadedContact(CASE_ONE).hertz(0.0, 1e11), "force"),
         (lambda: UnloadedContact(CASE_ONE).marking_band(-1.0), "depth"),
+        (lambda: UnloadedContact(CASE_ONE).hertz(1000.0, 110.0), "modulus must be in Pa"),
+        (lambda: UnloadedContact(CASE_ONE).curvatures(100.0), "roll must lie in"),
+        (lambda: UnloadedContact(CASE_ONE).curvatures(0.0), "roll must lie in"),
+        (lambda: UnloadedContact(CASE_ONE).curvatures(math.nan), "roll must be finite"),
+        (
+            lambda: UnloadedContact(CASE_ONE, Misalignment(shaft_angle=0.08)),
+            r"do not meet; .* of it would leave some",
+        ),
+        (
+            lambda: UnloadedContact(CASE_ONE, Misalignment(offset=-0.01)),
+            r"an edge bears; .* of it would leave some",
+        ),
+        (
+            lambda: Transverse(Body(CASE_ONE, 0.03), MeshLoad(0.6, 3e-6, 1.0)),
+            r"path=point_contact, sharing=\"mean\"",
+        ),
     ],
 )
 def test_bad_input(call, message):
@@ -360,7 +380,24 @@ def test_bad_input(call, message):
         call()
 
 
-@pytest.mark.parametrize("call", [lambda: UnloadedContact(3.0), lambda: UnloadedContact(CASE_ONE, 1e-5)])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: UnloadedContact(3.0),
+        lambda: UnloadedContact(CASE_ONE, 1e-5),
+        lambda: UnloadedContact(CASE_ONE).curvatures("a"),
+    ],
+)
 def test_wrong_kinds(call):
     with pytest.raises(TypeError, match="must be a"):
         call()
+
+
+def test_the_part_of_a_misalignment_that_is_named_would_leave_contact():
+    for error, value in (("offset", -0.01), ("offset", 0.01), ("gear_axial", 0.01), ("shaft_angle", 0.08)):
+        with pytest.raises(ValueError, match="would leave some") as caught:
+            UnloadedContact(CASE_ONE, Misalignment(**{error: value}))
+        share = float(re.search(r"\(([\d.e-]+) of it", str(caught.value))[1])
+        low, high = window(CASE_ONE, error)
+        limit = high if value > 0.0 else low
+        assert share == pytest.approx(limit / value, rel=0.06, abs=0.001)

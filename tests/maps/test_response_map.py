@@ -2,16 +2,19 @@
 
 from dataclasses import dataclass
 
+import joblib
 import numpy as np
 import pytest
 
 from facegear.drives import studies
-from facegear.floquet.models import Coordinate, Excited, replace_parameter
+from facegear.floquet.models import Coordinate, Excited, WithoutRigidMotion, replace_parameter
 from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.response import steady_response
 from facegear.maps.response_map import frequency_response, response_map
+from facegear.maps.stability_map import stability_map
+from facegear.maps.tracing import tongues
 from facegear.mechanics.classical import Mathieu
 from facegear.support.parameters import rad_per_s
 
@@ -31,6 +34,49 @@ class Plain:
     def system(self, speed):
         load = ContactLoad(PiecewiseChebyshev.constant([1.0]), self.part, 0.05)
         return PeriodicSystem([[1.0]], [[0.05]], [[1.0 - self.part]], (load,), 2.0 * np.pi / speed)
+
+
+ONE = PiecewiseChebyshev.constant([1.0])
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A method that has forgotten to return something."""
+
+    part: float = 1.0
+    coordinates = ()
+
+    def system(self, speed):
+        PeriodicSystem([[1.0]], [[0.1]], [[self.part]], (), speed)
+
+
+@dataclass(frozen=True)
+class Shifting:
+    """Another load from the speed 1 on."""
+
+    loads: int = 1
+    coordinates = (Coordinate("mass", "m"),)
+
+    def system(self, speed):
+        loads = (ContactLoad(ONE, 0.1),) * (self.loads + (speed > 1.0))
+        return PeriodicSystem([[1.0]], [[0.1]], [[1.0]], loads, 2.0 * np.pi / speed, force=WAVE)
+
+
+@dataclass(frozen=True)
+class Narrow:
+    """A spring in a load and a damper so weak that a grid of speeds passes by its resonances, under a force."""
+
+    damping: float = 1e-4
+    stiffness: float = 1.0
+    force: PiecewiseChebyshev = ONE
+    coordinates = (Coordinate("mass", "m"),)
+
+    def system(self, speed):
+        load = ContactLoad(ONE, 1.0)
+        stiffness = [[self.stiffness - 1.0]]
+        return PeriodicSystem(
+            [[1.0]], [[self.damping]], stiffness, (load,), 2.0 * np.pi / speed, force=self.force
+        )
 
 
 MODEL = Excited(Plain(), transmission_error=WAVE)
@@ -53,9 +99,62 @@ def test_an_oscillator_over_speed_against_its_closed_form():
     np.testing.assert_allclose(found.force_mean[:, 0], 0.0, atol=1e-12)
     turning = np.exp(2j * np.pi * np.outer(np.linspace(0.0, 1.0, 2001), order))
     highest = (turning @ force.T).real.max(axis=0)
-    np.testing.assert_allclose(found.force_highest[:, 0], highest, rtol=1e-3)
+    np.testing.assert_allclose(found.force_highest[:, 0], highest, rtol=1e-5)
     assert found.peak_label.values.tolist() == ["1/2", "1/1"]
     np.testing.assert_allclose(found.peak_speed, [0.5, 1.0], atol=0.01)
+
+
+@pytest.mark.parametrize("damping", [1e-1, 1e-3, 1e-5])
+def test_peaks_between_the_speeds_are_found_to_a_millionth(damping):
+    """Of two harmonics, height 1/(√2 c ω) each but for c²; the ends of the range are none."""
+    found = frequency_response(Narrow(damping, 1.0, WAVE), np.linspace(0.35, 1.63, 9), jobs=1)
+    assert found.peak_label.values.tolist() == ["1/2", "1/1"]
+    amplitudes = []
+    for speed in found.peak_speed.values:
+        w = speed * np.array([1.0, 2.0])
+        amplitudes.append(np.sqrt((np.abs([1.0, 0.3] / (1.0 - w**2 + 1j * w * damping)) ** 2).sum() / 2.0))
+    np.testing.assert_allclose(found.peak_force_rms, amplitudes, rtol=1e-9)
+    fine = found.peak_speed.values[:, None] * (1.0 + damping * np.linspace(-1.0, 1.0, 10_001))
+    w = fine[..., None] * np.array([1.0, 2.0])
+    exact = np.sqrt((np.abs([1.0, 0.3] / (1.0 - w**2 + 1j * w * damping)) ** 2).sum(axis=-1) / 2.0)
+    np.testing.assert_allclose(found.peak_force_rms, exact.max(axis=1), rtol=1e-6)
+
+
+def test_small_work_starts_no_processes(monkeypatch):
+    def parallel(*_, **__):
+        raise AssertionError("processes for a moment's work")
+
+    monkeypatch.setattr(joblib, "Parallel", parallel)
+    found = response_map(MODEL, SPEEDS[:9], "part", [0.3, 0.4, 0.5], jobs=2)
+    assert np.isfinite(found.force_rms).all()
+
+
+def test_rounding_makes_no_peaks():
+    found = frequency_response(Narrow(0.1), np.linspace(0.3, 1.6, 200), jobs=1)
+    assert 0.0 < found.force_rms.max() < 1e-10
+    assert found.sizes["peak"] == 0
+
+
+def test_nothing_known_at_any_speed_is_said_and_why():
+    spring = ContactLoad(PiecewiseChebyshev.constant([1.0, -1.0]), 1.0, 0.1, transmission_error=WAVE)
+
+    @dataclass(frozen=True)
+    class Pair:
+        part: float = 1.0
+        coordinates = (Coordinate("one", "m"), Coordinate("other", "m"))
+
+        def system(self, speed):
+            return PeriodicSystem(
+                np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), (spring,), 2.0 * np.pi / speed
+            )
+
+    with pytest.raises(ArithmeticError, match=r"WithoutRigidMotion\(model\) takes out"):
+        frequency_response(Pair(), SPEEDS[:3], jobs=1)
+    with pytest.raises(ArithmeticError, match=r"WithoutRigidMotion\(model\) takes out"):
+        response_map(Pair(), SPEEDS[:3], "part", [1.0], jobs=1)
+    assert np.isfinite(frequency_response(WithoutRigidMotion(Pair()), SPEEDS[:3], jobs=1).force_rms).all()
+    with pytest.raises(ArithmeticError, match="too long for the fastest motion"):
+        frequency_response(Narrow(0.1, 1e30), SPEEDS[:3], jobs=1)
 
 
 @pytest.fixture(scope="module")
@@ -112,9 +211,64 @@ def test_maps_are_made_of_responses(gearbox, tmp_path):
         (
             lambda: response_map(MODEL, SPEEDS, "pard", [1.0]),
             ValueError,
-            r"must be one of model\.part or others",
+            r"must be one of model\.part \(the last part is enough\), got 'pard'; model\.part\?",
         ),
         (lambda: frequency_response(MODEL, SPEEDS, jobs=0), ValueError, "jobs"),
+        (lambda: response_map(MODEL, SPEEDS, "part", [0.3, 0.3]), ValueError, "values must differ"),
+        (lambda: frequency_response(MODEL, [0.0, 1.0]), ValueError, r"greater than 0 rad/s, got 0\.0$"),
+        (
+            lambda: frequency_response(MODEL, SPEEDS, cache_directory=3),
+            TypeError,
+            "cache_directory must be a path",
+        ),
+        (
+            lambda: frequency_response(MODEL, SPEEDS, method="magnus"),
+            TypeError,
+            "method must be a Collocation",
+        ),
+        (
+            lambda: stability_map(MODEL, SPEEDS, "part", [0.3], method="magnus"),
+            TypeError,
+            "method must be a Coll",
+        ),
+        (lambda: growth_rate(MODEL.system(1.0), "magnus"), TypeError, "method must be a Collocation"),
+        (
+            lambda: frequency_response(Broken(), SPEEDS),
+            TypeError,
+            "returns must be a PeriodicSystem, got a NoneType",
+        ),
+        (
+            lambda: stability_map(Broken(), SPEEDS, "part", [1.0]),
+            TypeError,
+            "returns must be a PeriodicSystem",
+        ),
+        (
+            lambda: tongues(Broken(), (0.1, 1.0)),
+            TypeError,
+            "returns must be a PeriodicSystem",
+        ),
+        (lambda: WithoutRigidMotion(Broken()).system(1.0), TypeError, "returns must be a PeriodicSystem"),
+        (lambda: WithoutRigidMotion(3), TypeError, "model must have a method system"),
+        (
+            lambda: frequency_response(Shifting(), SPEEDS, jobs=1),
+            ValueError,
+            "as many loads at all speeds and values",
+        ),
+        (
+            lambda: response_map(Shifting(), SPEEDS[:3], "loads", [1, 2], jobs=1),
+            ValueError,
+            "as many loads at all speeds and values, 1 as at the first; got 2",
+        ),
+        (
+            lambda: Excited(Mathieu(0.1), transmission_error=PiecewiseChebyshev.constant([0.0, 1.0])),
+            ValueError,
+            "transmission_error must have one component, got 2",
+        ),
+        (
+            lambda: Excited(Shifting(loads=0), transmission_error=WAVE).system(0.5),
+            ValueError,
+            "transmission_error must be None for a model without loads",
+        ),
         (lambda: Excited(3.0), TypeError, "model"),
         (lambda: Excited(Mathieu(0.1), force=1.0), TypeError, "force must be a PiecewiseChebyshev"),
     ],
