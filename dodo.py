@@ -48,6 +48,7 @@ CHAPTERS = [path.stem for path in NOTEBOOKS if path.stem < "90"]
 # Started first, the longest before the others, so that two processors end at about the same time.
 LONGEST = (
     "04_design",
+    "03_contact_under_load",
     "04_one_pinion",
     "05_multiple_pinions",
     "06_in_plane_force",

@@ -109,7 +109,7 @@ class WithoutRow:
 
 @dataclass(frozen=True)
 class Contents:
-    """The dissertation's sections of chapters 2 to 8, its tables and its figures, in its order."""
+    """The dissertation's section 1.3 and sections of chapters 2 to 8, its tables and its figures, in order."""
 
     sections: tuple[Section, ...]
     equations_without_row: tuple[WithoutRow, ...]

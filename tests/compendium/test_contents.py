@@ -166,7 +166,8 @@ def test_the_list_is_complete():
     assert [table.number for table in CONTENTS.tables] == ["4.1", "4.2", "4.3", "4.4", "7.1"]
     chapters = [section.chapter for section in CONTENTS.sections]
     counts = {chapter: chapters.count(chapter) for chapter in sorted(set(chapters))}
-    assert counts == {2: 5, 3: 9, 4: 10, 5: 11, 6: 5, 7: 8, 8: 2}
+    # Of the first chapter the one section that says something about contact.
+    assert counts == {1: 1, 2: 5, 3: 9, 4: 10, 5: 11, 6: 5, 7: 8, 8: 2}
     equations = [tuple(map(int, text.split("-"))) for s in CONTENTS.sections for text in s.equations]
     ends = {2: 28, 3: 26, 4: 22, 5: 7, 6: 29, 7: 20}
     for chapter, end in ends.items():

@@ -78,18 +78,21 @@ def pattern(stored):
                     yield anchor(end, u, 1e-11, error=row, step=step)
 
 
+def unloaded(one):
+    """Contact ratio without load: line of action from the gear's tooth top to the pinion's tip."""
+    alpha, m = one.alpha, one.own.module
+    tip = mpmath.sqrt((one.own.pitch_radius + m) ** 2 - one.rb1**2)
+    action = tip - one.rb1 * mpmath.tan(alpha) + m / mpmath.sin(alpha)
+    return action / (mpmath.pi * m * mpmath.cos(alpha))
+
+
 def ratio(stored):
     for law, more, place in ((0, 1, 10), (0, 3, 15), (1, 1, 12), (1, 2, 17)):
         torque = float(stored.torque[place])
         one = contact(torque, ("slice", "pair")[law], more)
         yield anchor("contact_ratio", one.stops() - one.begins(), 1e-10, law=law, more=more, torque=torque)
     for more in (1, 2, 3):
-        one = contact(1.0, "pair", more)
-        alpha, m = one.alpha, one.own.module
-        # Line of action from the gear's tooth top to the pinion's tip.
-        tip = mpmath.sqrt((one.own.pitch_radius + m) ** 2 - one.rb1**2)
-        action = tip - one.rb1 * mpmath.tan(alpha) + m / mpmath.sin(alpha)
-        yield anchor("unloaded", action / (mpmath.pi * m * mpmath.cos(alpha)), 1e-11, more=more)
+        yield anchor("unloaded", unloaded(contact(1.0, "pair", more)), 1e-11, more=more)
 
 
 def period(stored):
@@ -110,14 +113,25 @@ def period(stored):
                 yield anchor("share", forces[k][0] / one.force, 1e-10, pair=k, **at)
 
 
+def last_line(one):
+    """Age at which nothing of a line is left on both flanks."""
+    return mpmath.findroot(
+        lambda age: one.ends(one.line(age))[1] - one.ends(one.line(age))[0], (2, 5), "illinois"
+    )
+
+
+def plates(stored):
+    """Yield what plates cannot change: contact without load, and of a load that spans the face."""
+    one = contact(1.0, "pair")
+    yield anchor("unloaded", unloaded(one), 1e-11, more=1)
+    yield anchor("contact_ratio", last_line(one), 1e-10, law=0, more=1, torque=float(stored.torque[-1]))
+
+
 def flank(stored):
     """Yield the ends of lines, and what presses there."""
     for torque, place in ((30.0, 40), (300.0, 80)):
         one = contact(torque, "slice")
-        last = mpmath.findroot(
-            lambda age, one=one: one.ends(one.line(age))[1] - one.ends(one.line(age))[0], (2, 5), "illinois"
-        )
-        age = last * (place + 1) / (stored.sizes["age"] + 1)
+        age = last_line(one) * (place + 1) / (stored.sizes["age"] + 1)
         level = one.approach(age % 1)
         for point, q in zip((0, stored.sizes["point"] - 1), one.ends(one.line(age)), strict=True):
             roll = q - one.line(age)
@@ -200,7 +214,7 @@ def shares(stored):
 
 def torque_map(stored, case, stiffness):
     growth = stored.growth_rate.values
-    places = [np.unravel_index(growth.argmax(), growth.shape), (4, 60), (14, 100)]
+    places = [np.unravel_index(growth.argmax(), growth.shape), (4, 60), (12, 80)]
     for row, column in places:
         torque, speed = float(stored.torque[row]), float(stored.speed[column])
         path = fg.loaded_contact(torque)(cut(BODIES[case]))
@@ -349,6 +363,7 @@ def main() -> None:
         "ch03_load_period": (CONTACT_ROUTE, period),
         "ch03_load_flank": (CONTACT_ROUTE, flank),
         "ch03_load_swing": (CONTACT_ROUTE, swing),
+        "ch03_load_plates": (CONTACT_ROUTE, plates),
         "ch03_load_share": (DISK_ROUTE, shares),
         "ch03_load_map_1": (DISK_ROUTE, lambda stored: torque_map(stored, 0, 0.6)),
         "ch03_load_map_2": (DISK_ROUTE, lambda stored: torque_map(stored, 1, 0.25)),

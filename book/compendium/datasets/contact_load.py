@@ -80,7 +80,9 @@ def contact_pattern(drive: Drive, errors: Mapping[str, ArrayLike], depth: float)
     )
 
 
-def effective_contact_ratio(drive: Drive, more: Sequence[int], torques: ArrayLike) -> xr.Dataset:
+def effective_contact_ratio(
+    drive: Drive, more: Sequence[int], torques: ArrayLike, laws: Sequence[str] = COMPLIANCES
+) -> xr.Dataset:
     """Effective contact ratio against torque, shaper and compliance.
 
     Parameters
@@ -90,6 +92,8 @@ def effective_contact_ratio(drive: Drive, more: Sequence[int], torques: ArrayLik
         Teeth that the shaper has more than the pinion.
     torques : array_like
         At the pinion [N m].
+    laws : sequence of str
+        How teeth give way.
 
     Returns
     -------
@@ -100,7 +104,7 @@ def effective_contact_ratio(drive: Drive, more: Sequence[int], torques: ArrayLik
     drives = [cut_by_larger_shaper(drive, count) for count in more]
     ratios = [
         [[LoadedContact(cut, t, compliance=law).contact_ratio for t in torques] for cut in drives]
-        for law in COMPLIANCES
+        for law in laws
     ]
     return xr.Dataset(
         {
@@ -110,10 +114,10 @@ def effective_contact_ratio(drive: Drive, more: Sequence[int], torques: ArrayLik
             ),
         },
         {
-            "law": [0, 1],
+            "law": np.arange(len(laws)),
             "more": list(more),
             "torque": torques,
-            "law_name": text("law", list(COMPLIANCES), "Law of compliance"),
+            "law_name": text("law", list(laws), "Law of compliance"),
         },
         {"parameters": describe(drive)},
     )
@@ -305,9 +309,12 @@ def unstable_shares(
 
 
 def loaded_gearbox(gearbox: Gearbox, path: loaded_contact) -> Torsional:
-    """Gearbox cut by a shaper with one tooth more, its pairs on their own clock, with the lever of true teeth."""
+    """Gearbox cut by a shaper with one tooth more, on the clock of its load, with the constant lever of true teeth.
+
+    With that lever one load that has the stiffness of the whole mesh does what the loads of all pairs do.
+    """
     cut = replace(gearbox, drive=cut_by_larger_shaper(gearbox.drive))
-    return Torsional(cut, Contact(path=path, sharing="each", rate="total"), arm="conjugate")
+    return Torsional(cut, Contact(path=path, rate="total"), arm="conjugate")
 
 
 def load_place(models: Mapping[str, Transverse], instants: int = 300) -> xr.Dataset:
@@ -405,8 +412,8 @@ def dynamic_load(
     Returns
     -------
     xarray.Dataset
-        ``dynamic_force``, of the pair that has most of it the rms over a mesh period of what the vibration adds, over
-        the static force of all pairs [-], over (torque, speed).
+        ``dynamic_force``, rms over a mesh period of what the vibration adds to the force of the mesh, over the static
+        force [-], over (torque, speed).
     """
     shown, speeds = _axis(speeds_rpm)
     rows = []
@@ -414,8 +421,8 @@ def dynamic_load(
         model = loaded_gearbox(gearbox, path)
         contact = path.of(model.drive)
         found = frequency_response(Excited(model, transmission_error=contact.excitation), speeds, jobs=jobs)
-        rows.append(found.force_rms.values.max(axis=-1) / contact.force)
-    name = "Rms of a pair's dynamic force over the static force"
+        rows.append(found.force_rms.values[:, 0] / contact.force)
+    name = "Rms of the dynamic force of the mesh over the static force"
     return xr.Dataset(
         {"dynamic_force": variable(("torque", "speed"), rows, name, "1", rtol=1e-6, atol=1e-9)},
         {"torque": [path.torque for path in paths], "speed": shown},

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
 from facegear.plotting.style import (
@@ -21,7 +20,6 @@ from facegear.plotting.style import (
     STEEL,
     VERMILION,
     draw_border,
-    draw_unstable,
     label_line,
     panels,
     styled,
@@ -54,8 +52,8 @@ def contact_pattern(data: xr.Dataset, face: tuple[float, float]) -> Figure:
 
 
 @styled
-def effective_contact_ratio(data: xr.Dataset, tregold: float, line: float) -> Figure:
-    """Effective contact ratio against torque, between Tregold's and that of line contact."""
+def effective_contact_ratio(data: xr.Dataset, plates: xr.Dataset, tregold: float, line: float) -> Figure:
+    """Effective contact ratio against torque, between Tregold's and that of line contact; `plates` as points."""
     figure, (ax,) = panels(height=4.0)
     for place, law in enumerate(data.law_name.values.tolist()):
         for more, colour in zip(data.more.values.tolist(), (BLUE, GREEN, ORANGE), strict=True):
@@ -69,6 +67,14 @@ def effective_contact_ratio(data: xr.Dataset, tregold: float, line: float) -> Fi
         ax, "Tregold's, and that of the unloaded point", (float(data.torque[15]), tregold), (0.0, 12.0)
     )
     label_line(ax, "line contact, shaper as the pinion", (float(data.torque[2]), line), (0.0, -18.0))
+    ax.plot(
+        plates.torque,
+        plates.contact_ratio[0, 0],
+        "o",
+        color=BLUE,
+        markersize=5,
+        label="elastic plates, 1 more",
+    )
     ax.plot([], [], "-", color=INK, label=_LAW["slice"])
     ax.plot([], [], "--", color=INK, label=_LAW["pair"])
     ax.legend(loc="center left")
@@ -108,24 +114,20 @@ def load_sharing(data: xr.Dataset, torque: float) -> Figure:
     return figure
 
 
-def _draw_pressure(ax: Any, data: xr.Dataset, torque: float, largest: float) -> QuadMesh:
-    pressure = data.pressure.sel(torque=torque).values
-    mesh: QuadMesh = ax.pcolormesh(
+def _draw_pressure(ax: Any, data: xr.Dataset, torque: float, largest: float) -> Any:
+    drawn = ax.contourf(
         data.position.values * _MM,
         data.height.values * _MM,
-        pressure * 1e-3,
-        cmap=GROWTH.with_extremes(under="none"),
-        vmin=1e-3 * largest * 1e-3,
-        vmax=largest * 1e-3,
-        shading="gouraud",
-        rasterized=True,
+        data.pressure.sel(torque=torque).values * 1e-3,
+        levels=largest * 1e-3 * np.append(1e-3, np.linspace(0.04, 1.0, 25)),
+        cmap=GROWTH,
     )
     for line in ({"point": 0}, {"point": -1}, {"age": 0}, {"age": -1}):
         ax.plot(data.position[line] * _MM, data.height[line] * _MM, color=GREY, linewidth=0.8)
     ax.set(xlabel="along the face, u [mm]", ylabel="below the tooth top [mm]")
     ax.invert_yaxis()
     ax.grid(False)
-    return mesh
+    return drawn
 
 
 @styled
@@ -133,8 +135,8 @@ def pressed_flank(data: xr.Dataset, torque: float) -> Figure:
     """Load per length on the flank while it goes through the mesh, under one torque."""
     figure, (ax,) = panels(height=3.4)
     largest = float(data.pressure.sel(torque=torque).max())
-    mesh = _draw_pressure(ax, data, torque, largest)
-    figure.colorbar(mesh, ax=ax, label="load per length [N/mm]")
+    drawn = _draw_pressure(ax, data, torque, largest)
+    figure.colorbar(drawn, ax=ax, label="load per length [N/mm]", format="%.0f")
     ax.set_title(f"{torque:g} N m at the pinion")
     return figure
 
@@ -157,6 +159,9 @@ def unstable_shares(data: xr.Dataset, torques: Sequence[float], rated: float, ca
                 markersize=3,
                 label=_LAW[law],
             )
+        plates = {float(name.split()[1]): k for k, name in enumerate(names) if name.startswith("plate ")}
+        values = share.values[list(plates.values())]
+        ax.plot(list(plates), values, "D", color=INK, markersize=4, label="elastic plates")
         low, high = torques[0], torques[-1]
         for name, marker, colour, place, label in (
             (
@@ -196,16 +201,19 @@ def load_place(data: xr.Dataset) -> Figure:
 
 @styled
 def torque_maps(maps: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
-    """Growth rate over speed and torque."""
+    """How fast the slowest motion dies down over speed and torque; what grows is outlined."""
     figure, axes = panels(1, len(maps), height=3.8, sharey=True)
-    largest = max(float(data.growth_rate.max()) for data in maps)
+    fastest = max(-float(data.growth_rate.min()) for data in maps)
     for ax, data, title in zip(axes, maps, titles, strict=True):
         speed, torque, growth = data.speed.values, data.torque.values, data.growth_rate.values
-        mesh = draw_unstable(ax, speed, torque, growth, max(largest, 1e-3))
+        mesh = ax.pcolormesh(
+            speed, torque, -growth, cmap="cividis", vmin=0.0, vmax=fastest, shading="nearest", rasterized=True
+        )
         draw_border(ax, speed, torque, growth)
         ax.set(yscale="log", xlabel="speed of the face gear [rpm]", title=title)
+        ax.grid(False)
     axes[0].set_ylabel("torque at the pinion [N m]")
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]")
+    figure.colorbar(mesh, ax=axes, label="decay of the slowest motion [1/s]")
     return figure
 
 
@@ -218,7 +226,7 @@ def dynamic_load(data: xr.Dataset) -> Figure:
     ax.set(
         yscale="log",
         xlabel="speed of the face gear [rpm]",
-        ylabel="dynamic force of a pair, rms [% of static]",
+        ylabel="dynamic mesh force, rms [% of static]",
     )
     ax.legend()
     return figure
