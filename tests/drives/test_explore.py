@@ -311,7 +311,7 @@ class Unnamed:
         (Unnamed(), TypeError, "each of its 1 rows, got None"),
         (Unnamed(coordinates=("q",)), TypeError, r"each of its 1 rows, got \('q',\)"),
         (Unnamed(coordinates=SQUARE.coordinates * 2), ValueError, "each of its 1 rows, got 2"),
-        (Unnamed(system=lambda speed: None), TypeError, "system must be a PeriodicSystem, got a NoneType"),
+        (Unnamed(system=lambda speed: None), TypeError, "must be a PeriodicSystem, got a NoneType"),
     ],
 )
 def test_a_cell_of_an_incomplete_model_says_what_is_missing(model, error, says):

@@ -48,8 +48,8 @@ def test_areas_under_the_gap_by_quadrature():
     ("drive", "kinks"),
     [
         (CUT, 2),
-        (replace(CUT, shaft_angle=math.radians(105.0)), 3),
-        (Drive(20, 100, MODULE, shaper_teeth=21), 2),
+        pytest.param(replace(CUT, shaft_angle=math.radians(105.0)), 3, marks=pytest.mark.slow),
+        pytest.param(Drive(20, 100, MODULE, shaper_teeth=21), 2, marks=pytest.mark.slow),
         (Drive(52, 260, 3e-3, shaper_teeth=55), 1),
     ],
     ids=["Case I", "cut again at 105°", "few teeth", "many teeth"],
