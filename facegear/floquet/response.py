@@ -274,7 +274,8 @@ def _on_panels(
         )
     away = np.eye(size) - scaled
     smallest = float(np.linalg.svd(away, compute_uv=False)[-1])
-    condition = max(1.0, float(np.linalg.norm(scaled, 2))) / max(smallest, np.finfo(float).tiny)
+    largest = max(1.0, float(np.linalg.norm(scaled, 2)))
+    condition = largest / max(smallest, 1e-300 * largest)
     if condition > _LOST:
         raise ArithmeticError(
             f"a multiplier is so close to 1 that no response is known (condition {condition:.2g}): a rigid-body "

@@ -126,8 +126,9 @@ class SliceCompliance(Compliance):
         """∫ (δ − g) du times k_m/L, and the length of contact times it."""
         first, last = self._contact(approach, lines)
         distance, area = self.slices.distance_and_area(np.stack([first, last]))
-        length = distance[1] - distance[0]
-        force = approach * length - (area[1] - area[0])
+        # Two sums at one place may differ by rounding, which must not pass for contact.
+        length = np.where(last > first, distance[1] - distance[0], 0.0)
+        force = np.where(last > first, approach * length - (area[1] - area[0]), 0.0)
         return self._foundation * force, self._foundation * length
 
     def pressed(self, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:

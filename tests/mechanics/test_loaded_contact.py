@@ -11,6 +11,7 @@ from scipy.integrate import quad
 
 from facegear.geometry.drive import Drive
 from facegear.geometry.point_contact import Misalignment, UnloadedContact
+from facegear.mechanics.compliance import Lines
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.slices import Slices
 from tests.independent.loaded_contact import LoadedContact as Independent
@@ -94,6 +95,16 @@ def test_forces_balance_the_torque(law, torque):
     contact = LoadedContact(CUT, torque, ERROR, law)
     instants = np.linspace(0.0, 1.0, 37)
     assert np.abs(contact.pairs(instants).force.sum(axis=0) / contact.force - 1.0).max() < 1e-12
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_line_of_which_nothing_is_left_carries_nothing(law):
+    """However its ends are rounded: any force would count as contact."""
+    s = np.random.default_rng(7).uniform(-4e-3, 3e-3, 4001)
+    ages = np.zeros_like(s)
+    contact = LoadedContact(CUT, 20.0, compliance=law)
+    for force in contact._law.force(np.full(s.shape, 1e-5), Lines(s, s, ages)):
+        assert np.count_nonzero(force) == 0
 
 
 @pytest.mark.parametrize("law", LAWS)
