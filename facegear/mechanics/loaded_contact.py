@@ -172,8 +172,7 @@ class LoadedContact:
 
     def _all_pairs(self, instants: FloatArray) -> FloatArray:
         """Ages since the first line of all pairs that may be in mesh, shape (K,) + S."""
-        start = instants - np.floor(instants)
-        return np.stack([start + k for k in range(math.ceil(self.slices.sweep))])
+        return _ages(instants, self.slices.sweep)
 
     def _total(self, approach: FloatArray, ages: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force [N] and stiffness [N/m] of all pairs when one of them has an age."""
@@ -345,9 +344,7 @@ class LoadedContact:
         TypeError, ValueError
             Not numeric or not finite.
         """
-        instants = finite_array("fraction", fraction)
-        start = instants - np.floor(instants)
-        return self.pairs_of_age(np.stack([start + k for k in range(math.ceil(self.contact_ratio))]))
+        return self.pairs_of_age(_ages(finite_array("fraction", fraction), self.contact_ratio))
 
     def pairs_of_age(self, ages: FloatArray) -> LoadedPairs:
         """As :meth:`pairs`, of pairs that have been pressed for so many mesh periods, (P,) + S."""
@@ -385,13 +382,18 @@ class LoadedContact:
             Not numeric or not finite, or where the flank has no point.
         """
         instants, u = finite_array("fraction", fraction), finite_array("position", position, "m")
-        start = instants - np.floor(instants)
-        ages = np.stack([start + k for k in range(math.ceil(self.contact_ratio))]) + self._mesh[0]
+        ages = _ages(instants, self.contact_ratio) + self._mesh[0]
         return self.line_load(ages, np.broadcast_to(self.slices.at(u), (*ages.shape, u.size)))
 
     def line_load(self, age: FloatArray, s: FloatArray) -> FloatArray:
         """As :meth:`pressure`, on slices s of lines, S + (m,) [√m], of an age counted as by `slices.ends`, S."""
         return self._law.pressure(self._approach(age), self._lines(age), s)
+
+
+def _ages(instants: FloatArray, longest: float) -> FloatArray:
+    """Mesh periods since each pair that there may be began, (P,) + S, if one lasts for `longest`."""
+    start = instants - np.floor(instants)
+    return np.stack([start + k for k in range(math.ceil(longest))])
 
 
 def fit_tolerances(breakpoints: tuple[float, ...]) -> FloatArray:

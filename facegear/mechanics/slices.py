@@ -63,8 +63,6 @@ class Slices:
     misalignment: Misalignment = ALIGNED
 
     def __post_init__(self) -> None:
-        if self.contact.pressure_angle >= self._range[1] or self.contact.pressure_angle <= self._range[0]:
-            raise ValueError(f"misalignment leaves no contact on the flank; {self.misalignment!r}")
         angles = np.linspace(*self._range, 97)
         beyond = self._slope(angles) * (angles - self.contact.pressure_angle) < 0.0
         if np.any(beyond):
@@ -107,8 +105,7 @@ class Slices:
         return self._series(lambda q: self.contact.residual(q) * direction(q))
 
     def _series(self, function: Callable[[FloatArray], FloatArray]) -> Chebyshev:
-        fitted = ChebyshevSeries.resolved(function, *self._range, _LEAST_DEGREE, _LARGEST_DEGREE, _TOLERANCE)
-        return Chebyshev(fitted.coefficients, domain=self._range)
+        return _polynomial(_resolved(function, *self._range))
 
     def root_gap(self, q: ArrayLike) -> FloatArray:
         """Square root s of the gap of slices [√m], negative inside of the unloaded contact.
@@ -133,26 +130,13 @@ class Slices:
         def angle(s: FloatArray) -> FloatArray:
             return crossing(lambda q, wanted: self.root_gap(q) - wanted, *self._range, s)
 
-        fitted = ChebyshevSeries.resolved(angle, low, high, _LEAST_DEGREE, _LARGEST_DEGREE, _TOLERANCE)
-        return Chebyshev(fitted.coefficients, domain=[low, high])
+        return _polynomial(_resolved(angle, low, high))
 
     @cached_property
     def position(self) -> Chebyshev:
         """Coordinate u along the shaper's axis of the slice s [m]."""
         low, high = self.pressure_angle.domain.tolist()
-        fitted = ChebyshevSeries.resolved(
-            lambda s: self._region.position(self.pressure_angle(s)),
-            low,
-            high,
-            _LEAST_DEGREE,
-            _LARGEST_DEGREE,
-            _TOLERANCE,
-        )
-        return Chebyshev(fitted.coefficients, domain=[low, high])
-
-    def distance(self, s: FloatArray) -> FloatArray:
-        """Distance u − u0 of slices from the unloaded contact [m]."""
-        return self.distance_and_area(s)[0]
+        return _polynomial(_resolved(lambda s: self._region.position(self.pressure_angle(s)), low, high))
 
     def distance_and_area(self, s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Distance of slices from the unloaded contact [m], and ∫ g du as far as there [m²]."""
@@ -165,14 +149,7 @@ class Slices:
         slope, t = self.position.deriv(), 0.5 * (_NODES + 1.0)
         weights = 0.5 * _WEIGHTS * np.stack([np.ones_like(t), t**2])
         low, high = self.position.domain.tolist()
-        return ChebyshevSeries.resolved(
-            lambda s: slope(s[:, np.newaxis] * t) @ weights.T,
-            low,
-            high,
-            _LEAST_DEGREE,
-            _LARGEST_DEGREE,
-            _TOLERANCE,
-        )
+        return _resolved(lambda s: slope(s[:, np.newaxis] * t) @ weights.T, low, high)
 
     # --- lines -----------------------------------------------------------------------------------------------
 
@@ -337,6 +314,16 @@ class Slices:
         """Where slices are in mesh: radius r [m] and angle θ about the gear's axis [rad], from the pinion's."""
         x, y, _ = np.moveaxis(self._region.point(*self.generated(s, age)), -1, 0)
         return np.hypot(x, y), np.arctan2(x, -y)
+
+
+def _resolved(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> ChebyshevSeries:
+    """Series of a function of a slice."""
+    return ChebyshevSeries.resolved(function, low, high, _LEAST_DEGREE, _LARGEST_DEGREE, _TOLERANCE)
+
+
+def _polynomial(series: ChebyshevSeries) -> Chebyshev:
+    """Return the same as what can be derived and integrated."""
+    return Chebyshev(series.coefficients, domain=[series.low, series.high])
 
 
 def _graded(edges: FloatArray) -> list[float]:
