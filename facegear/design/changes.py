@@ -64,7 +64,7 @@ def possible_changes(model: Model) -> tuple[Change, ...]:
     -------
     tuple of Change
         Of a field that lists the angles of pinions one change for each but the first, by parts of the angular pitch,
-        that is its phase.
+        that is its phase. What stands in several places, as the material of body and teeth, changes in all of them.
 
     Examples
     --------
@@ -72,7 +72,16 @@ def possible_changes(model: Model) -> tuple[Change, ...]:
     >>> [change.name for change in possible_changes(EXAMPLE_B)][:2]
     ['thickness of the body', 'bore radius']
     """
-    return tuple(_changes(model, ()))
+    places: dict[str, list[Change]] = {}
+    for change in _changes(model, ()):
+        places.setdefault(change.name, []).append(change)
+    return tuple(Change(name, partial(_everywhere, changes=same)) for name, same in places.items())
+
+
+def _everywhere(model: Any, change: float, changes: Sequence[Change]) -> Any:
+    for each in changes:
+        model = each.apply(model, change)
+    return model
 
 
 def _changes(part: Any, path: tuple[str, ...]) -> Iterator[Change]:

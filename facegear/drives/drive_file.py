@@ -15,10 +15,19 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from facegear.design.body import Requirements
-from facegear.drives.drive_keys import LONGEST_TEXT, MOST_PINIONS, NAME, SECTIONS, WIDEST_SPEED_RATIO, Key
+from facegear.drives.contacts import NAMES, correction_of, in_torsion, transverse_contacts
+from facegear.drives.drive_keys import (
+    LONGEST_TEXT,
+    MOST_PINIONS,
+    NAME,
+    SECTIONS,
+    USUAL,
+    WIDEST_SPEED_RATIO,
+    Key,
+)
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
-from facegear.mechanics.contact import SKEW_LINE, Contact
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
 from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
 from facegear.mechanics.torsional import Gearbox, Torsional
@@ -52,6 +61,8 @@ class DriveFile:
         Drive, body, mesh load and pinions.
     requirements : Requirements
         Power [W], pinion speed [rad/s], safety factor, operating speeds of the face gear [rad/s].
+    contacts : mapping of str to Contact
+        Those that the teeth can have, by the names that a report gives them, that of `transverse` first.
     torsional : Torsional or None
         Shafts and inertias, if the file has a gearbox.
     """
@@ -59,6 +70,7 @@ class DriveFile:
     name: str
     transverse: Transverse
     requirements: Requirements
+    contacts: Mapping[str, Contact]
     torsional: Torsional | None = None
 
     @property
@@ -235,6 +247,8 @@ def _value(path: str, key: Key, value: Any) -> Any:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
         return tuple(key.to_si(_number(f"{path}[{i}]", key, entry)) for i, entry in enumerate(value))
     if key.kind == "integer":
+        if key.or_zero and value == 0 and not isinstance(value, bool):
+            return 0
         return int(within(path, integer_at_least(path, value, int(key.lowest)), key.lowest, key.highest))
     return key.to_si(_number(path, key, value))
 
@@ -290,33 +304,49 @@ def _plain(meaning: str) -> str:
 
 def _built(found: _Found) -> DriveFile:
     values = found.values
-    drive = _by_model(found, "gears", lambda: Drive(**values["gears"]))
+    gears = values["gears"] | {"shaper_teeth": values["gears"]["shaper_teeth"] or None}
+    drive = _by_model(found, "gears", lambda: Drive(**gears))
     material = _by_model(found, "material", lambda: Material(**values["material"]))
     _check_bore(drive, values["body"]["bore_radius"])
     _check_angles(drive, values["pinions"]["angles"])
     body = _by_model(found, "body", lambda: Body(drive, material=material, **values["body"]))
     pinions = dict(values["pinions"])
-    angles, clock = pinions.pop("angles"), pinions.pop("contact_ratio")
-    ratio = drive.geometric_contact_ratio if clock == "geometric" else None
+    angles, asked = pinions.pop("angles"), pinions.pop("contact_ratio")
+    contacts = _by_model(found, "gearbox", lambda: _contacts(found, drive, material, asked))
+    contact = next(iter(contacts.values()))
     load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
-    transverse = _by_model(
-        found, "pinions", lambda: Transverse(body, load, angles, Contact(contact_ratio=ratio))
-    )
+    transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact))
     _by_model(found, "body", lambda: transverse.bearing_stiffness)
     requirements = _requirements(found, body)
     torsional = None
     if (gearbox := values["gearbox"]) is not None:
-        torsional = _by_model(found, "gearbox", lambda: _torsional(drive, gearbox, ratio))
-    return DriveFile(found.name, transverse, requirements, torsional)
+        torsional = _by_model(
+            found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive))
+        )
+    return DriveFile(found.name, transverse, requirements, contacts, torsional)
 
 
-def _torsional(drive: Drive, gearbox: dict[str, Any], contact_ratio: float | None) -> Torsional:
+def _contacts(found: _Found, drive: Drive, material: Material, asked: str) -> dict[str, Contact]:
+    """Contacts that the teeth can have, under load that of the power; the one that the file asks for first."""
+    operation, gearbox = found.values["operation"], found.values["gearbox"]
+    factor = None
+    if gearbox is not None and not drive.has_line_contact:
+        factor = correction_of(drive, gearbox["mesh_stiffness"], material)
+    possible = transverse_contacts(drive, operation["power"] / operation["pinion_speed"], material, factor)
+    if asked != USUAL and asked not in possible:
+        raise ValueError(
+            f"{found.key('pinions', 'contact_ratio')} must be {', '.join([USUAL, *possible])} for a shaper of "
+            f"{drive.generating.pinion_teeth} teeth and a pinion of {drive.pinion_teeth}, got {asked!r}"
+        )
+    return {NAMES[name]: possible[name] for name in sorted(possible, key=lambda name: name != asked)}
+
+
+def _torsional(drive: Drive, gearbox: dict[str, Any], contact: Contact) -> Torsional:
     values = dict(gearbox)
     arm = values.pop("arm")
     for part in ("mesh", "input", "output"):
         # The file gives damping as a time.
         values[f"{part}_damping"] *= values[f"{part}_stiffness"]
-    contact = replace(SKEW_LINE, contact_ratio=contact_ratio)
     return Torsional(Gearbox(drive, **values), contact, arm)
 
 

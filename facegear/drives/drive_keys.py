@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
+from facegear.geometry.drive import FEWEST_TEETH
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
 from facegear.support.parameters import STEEL, WATT_PER_HORSEPOWER
 
@@ -20,6 +21,8 @@ Kind = Literal["integer", "number", "text", "choice", "numbers"]
 # Tongues crowd towards standstill: their number, and the time to find them, goes with highest over lowest speed.
 WIDEST_SPEED_RATIO = 50.0
 LONGEST_TEXT = 80
+# What a choice is that the drive itself decides.
+USUAL = "usual"
 MOST_PINIONS = 12
 # Value in SI is value in the file divided by this.
 PER_SI: Mapping[str, float] = MappingProxyType(
@@ -128,8 +131,10 @@ class Section:
             yield tuple(key for key in self.keys if key.si_name == name)
 
 
-def _count(name: str, meaning: str, lowest: int, highest: int, default: int | None = None) -> Key:
-    return Key(name, meaning, "integer", "", lowest, highest, default=default)
+def _count(
+    name: str, meaning: str, lowest: int, highest: int, default: int | None = None, *, or_zero: bool = False
+) -> Key:
+    return Key(name, meaning, "integer", "", lowest, highest, or_zero=or_zero, default=default)
 
 
 def _time(name: str, meaning: str, default: float | None = None) -> Key:
@@ -144,10 +149,19 @@ def _ratio(name: str, meaning: str, no_unit: str) -> Key:
 NAME = Key("name", "name of the drive, for titles: any characters, not all of them blank", "text")
 
 _GEARS = Section(
-    "Teeth of the pinion, which is also the shaper's shape, and of the face gear.",
+    "Teeth of the pinion, of the shaper that cuts the face gear, and of the face gear.",
     (
         _count("pinion_teeth", "$N_1$, teeth of the pinion", 10, 300),
         _count("gear_teeth", "$N_2$, teeth of the face gear, more than the pinion's", 11, 3000),
+        _count(
+            "shaper_teeth",
+            "$N_s$, teeth of the shaper: 0 for those of the pinion and contact along lines; more for contact at a "
+            "point that spreads under load",
+            FEWEST_TEETH,
+            2999,
+            0,
+            or_zero=True,
+        ),
         Key("module_mm", "$m_d$, module; not a diametral pitch", "number", "mm", 0.1, 100.0),
         Key(
             "diametral_pitch_per_inch",
@@ -233,10 +247,11 @@ _PINIONS = Section(
         ),
         Key(
             "contact_ratio",
-            "time a tooth pair stays in mesh: Tregold's, as printed, or that of the true sweep",
+            "time a tooth pair stays in mesh. Shaper with the pinion's teeth: Tregold's, as printed (usual), or that "
+            "of the true sweep (geometric). With more: under the torque of `operation` (loaded, usual) or without load",
             "choice",
-            default="tregold",
-            choices=("tregold", "geometric"),
+            default=USUAL,
+            choices=(USUAL, "tregold", "geometric", "loaded", "unloaded"),
         ),
     ),
 )
@@ -367,7 +382,7 @@ def _key_schema(key: Key) -> dict[str, Any]:
             "items": {"type": "number", **ends},
         }
     if key.or_zero:
-        return told | {"type": "number", "anyOf": [{"const": 0}, ends]}
+        return told | {"type": key.kind, "anyOf": [{"const": 0}, ends]}
     return told | {"type": key.kind, **ends}
 
 

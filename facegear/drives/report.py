@@ -71,8 +71,10 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
         Row("outer radius of the teeth R2", 1e3 * drive.outer_radius, "mm"),
         Row("face width L", 1e3 * drive.face_width, "mm"),
         Row("angular pitch of the face gear", math.degrees(drive.angular_pitch), "°"),
-        Row("contact ratio after Tregold", drive.contact_ratio, "1"),
-        Row("contact ratio of the true sweep", drive.geometric_contact_ratio, "1"),
+        *(
+            Row(f"contact ratio, {name}", contact.ratio(drive), "1")
+            for name, contact in file.contacts.items()
+        ),
         Row("thickness of the body", 1e3 * body.thickness, "mm"),
         Row("mass of the body", body.mass, "kg"),
         Row("mass of a solid pinion", nominal_pinion_mass(body), "kg"),

@@ -1,9 +1,10 @@
-"""Whether a drive is safe, said in words: under which contact ratio and which direction of the driving force.
+"""Whether a drive is safe, said in words: under which contact and which direction of the driving force.
 
 The driving force of chapter 6 either stays tangent to the bent rim, as the dissertation has it, or keeps its direction
 in space. Which of them a real tooth force does is not known, and it decides between flutter and none, so that both are
-computed; and so is the contact ratio, Tregold's and that of the true sweep, whichever the file asks for. Each case has
-a basis of its own that is raised until its unstable speeds stand still (:mod:`facegear.drives.basis`).
+computed; and so is the contact, whichever the file asks for: Tregold's ratio and that of the true sweep, or, with a
+shaper of more teeth than the pinion, under the torque of the file and without load. Each case has a basis of its own
+that is raised until its unstable speeds stand still (:mod:`facegear.drives.basis`).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.floquet.modes import mean_growth_rate
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import Tongue
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import rpm
@@ -35,19 +37,19 @@ _ALIKE = 0.05
 
 @dataclass(frozen=True)
 class Case:
-    """A drive under one contact ratio and one direction of the driving force.
+    """A drive under one contact and one direction of the driving force.
 
     Attributes
     ----------
-    clock : str
-        Name of the contact ratio.
+    contact : str
+        Name of the contact, which sets the contact ratio.
     following : {"follower", "dead"}
     found : SettledTongues
     flutter_share : float
         Part of the range of speed in which the mean system alone is unstable, sampled at 61 speeds.
     """
 
-    clock: str
+    contact: str
     following: Following
     found: SettledTongues
     flutter_share: float
@@ -55,38 +57,30 @@ class Case:
     @property
     def name(self) -> str:
         """Both in words."""
-        return f"{self.clock}, {_FORCES[self.following]}"
+        return f"{self.contact}, {_FORCES[self.following]}"
 
 
-def driven(file: DriveFile, following: Following, contact_ratio: float) -> Transverse:
+def driven(file: DriveFile, following: Following, contact: Contact) -> Transverse:
     """Model of a drive file with the force that its power takes, all harmonics of its stress included.
 
     Parameters
     ----------
     file : DriveFile
     following : {"follower", "dead"}
-    contact_ratio : float
-        Mesh periods that a tooth pair stays in mesh.
+    contact : Contact
     """
     duty, model = file.requirements, file.transverse
     return replace(
         model,
-        contact=replace(model.contact, contact_ratio=contact_ratio),
+        contact=contact,
         force=DrivingForce(duty.power, duty.pinion_speed, following, complete_harmonics(model.body)),
     )
-
-
-def clocks(file: DriveFile) -> dict[str, float]:
-    """Names and values of both contact ratios, that of the file first."""
-    drive, own = file.drive, file.transverse.contact_ratio
-    both = {"Tregold": drive.contact_ratio, "true sweep": drive.geometric_contact_ratio}
-    return dict(sorted(both.items(), key=lambda item: abs(item[1] - own)))
 
 
 def cases(
     file: DriveFile, *, tolerance: float = 0.02, most_steps: int = 5, jobs: int = -1
 ) -> tuple[Case, ...]:
-    """Tongues of a drive under its power, for both contact ratios and both directions of the force.
+    """Tongues of a drive under its power, for both contacts that its teeth can have and both directions of the force.
 
     Parameters
     ----------
@@ -99,15 +93,13 @@ def cases(
     Returns
     -------
     tuple of Case
-        Those with the file's contact ratio first, the following force before the dead one.
+        Those with the file's contact first, the following force before the dead one.
     """
-    settings = [(clock, ratio, force) for clock, ratio in clocks(file).items() for force in _FORCES]
-    models = [driven(file, force, ratio) for _, ratio, force in settings]
+    settings = [(name, contact, force) for name, contact in file.contacts.items() for force in _FORCES]
+    models = [driven(file, force, contact) for _, contact, force in settings]
     work = [(model, file.requirements.speeds, tolerance, most_steps) for model in models]
     found = in_processes(_settled, work, jobs)
-    return tuple(
-        Case(clock, force, *result) for (clock, _, force), result in zip(settings, found, strict=True)
-    )
+    return tuple(Case(name, force, *result) for (name, _, force), result in zip(settings, found, strict=True))
 
 
 def _settled(
@@ -196,10 +188,10 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
 
 def _what_decides(computed: Sequence[Case]) -> str:
     """Name what parts stable cases from unstable ones."""
-    stable = {(case.clock, case.following): not case.found.tongues for case in computed}
-    clock = any(stable[c, f] != stable[d, f] for c, f in stable for d, g in stable if f == g)
+    stable = {(case.contact, case.following): not case.found.tongues for case in computed}
+    contact = any(stable[c, f] != stable[d, f] for c, f in stable for d, g in stable if f == g)
     force = any(stable[c, f] != stable[c, g] for c, f in stable for d, g in stable if c == d)
-    names = ["the contact ratio"] * clock + ["whether the driving force follows the bent rim"] * force
+    names = ["the contact ratio"] * contact + ["whether the driving force follows the bent rim"] * force
     return " and on ".join(names)
 
 
@@ -247,10 +239,11 @@ def _resonances(found: Sequence[Tongue]) -> str:
 
 def _left_out(file: DriveFile) -> str:
     torsion = "" if file.torsional is not None else "torsion (the file has no section gearbox), "
+    sharing = ", how tooth pairs share the load" if file.drive.has_line_contact else ""
     return (
-        f"Not included: {torsion}the flexibility of the teeth, how tooth pairs share the load, the inertia of the "
-        "moving contact (total rate), tooth errors and backlash, the stiffness of the housing. The driving force is "
-        "the same at all speeds; all parameters are taken as exact; speeds outside the range are not looked at."
+        f"Not included: {torsion}the flexibility of the teeth{sharing}, the inertia of the moving contact (total "
+        "rate), tooth errors and backlash, the stiffness of the housing. The driving force is the same at all speeds; "
+        "all parameters are taken as exact; speeds outside the range are not looked at."
     )
 
 

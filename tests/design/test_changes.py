@@ -11,7 +11,9 @@ from facegear.drives.drive_file import read_drive_file
 from facegear.floquet.labels import Combination
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue, tongues
-from facegear.support.parameters import rad_per_s, rpm
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.paths import loaded_contact
+from facegear.support.parameters import STEEL, rad_per_s, rpm
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml").transverse
@@ -79,6 +81,17 @@ def test_slopes_are_those_of_tongues_traced_anew(model, speeds):
         row = effects.isel(change=order.index(name))
         assert float(row["width_slope"]) == pytest.approx(rpm(width) / 100, rel=1e-3, abs=1e-5), name
         assert float(row["growth_slope"]) == pytest.approx(growth / 100, rel=1e-3, abs=1e-7), name
+
+
+def test_what_stands_in_several_places_changes_in_all_of_them():
+    soft = replace(STEEL, viscous_loss_factor=1e-6)
+    body = replace(CASE_1.body, drive=replace(CASE_1.body.drive, shaper_teeth=27), material=soft)
+    model = replace(CASE_1, body=body, contact=Contact(path=loaded_contact(100.0, material=soft)))
+    changes = possible_changes(model)
+    assert len({change.name for change in changes}) == len(changes)
+    (change,) = [change for change in changes if change.name == "loss factor of the material"]
+    changed = change.apply(model, 0.1)
+    assert changed.body.material == changed.contact.path.material == replace(soft, viscous_loss_factor=1.1e-6)
 
 
 def test_best_changes_are_made_in_earnest_in_the_better_direction():

@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 
 from facegear.drives.drive_file import DriveFile, DriveFileError, parse_drive, read_drive_file
 from facegear.drives.drive_keys import NAME, SECTIONS
+from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.edge_stiffness import DrivingForce
+from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.support.parameters import rad_per_s
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -81,6 +83,39 @@ def test_clock_of_the_true_sweep():
     assert found.transverse.contact_ratio == found.drive.geometric_contact_ratio
     box = parse_drive(GEARBOX.replace("mass: 1.0", "mass: 1.0\n  contact_ratio: geometric"))
     assert box.torsional.contact_ratio == box.drive.geometric_contact_ratio
+
+
+class TestShaperWithMoreTeeth:
+    LOCALIZED = (DRIVES / "localized.yaml").read_text(encoding="utf-8")
+
+    def test_contact_under_the_torque_of_the_file(self):
+        found = parse_drive(self.LOCALIZED)
+        assert found.drive == Drive(26, 130, 3.175e-3, shaper_teeth=27)
+        torque = 447.42e3 / rad_per_s(5000.0)
+        assert found.transverse.contact_ratio == LoadedContact(found.drive, torque).contact_ratio
+        assert list(found.contacts) == ["contact under load", "point contact"]
+        assert found.contacts["contact under load"] == found.transverse.contact
+
+    def test_contact_without_load(self):
+        found = parse_drive(self.LOCALIZED.replace("mass: 1.0", "mass: 1.0\n  contact_ratio: unloaded"))
+        assert found.transverse.contact_ratio == pytest.approx(1.557363852, abs=1e-9)
+        assert list(found.contacts) == ["point contact", "contact under load"]
+
+    def test_a_gearbox_has_the_contact_and_the_stiffness_of_its_teeth(self):
+        text = GEARBOX.replace("pinion_teeth: 31", "pinion_teeth: 31\n  shaper_teeth: 33")
+        found = parse_drive(text)
+        path = found.torsional.contact.path
+        assert path == found.transverse.contact.path
+        assert path.of(found.drive).pair_stiffness == pytest.approx(found.torsional.gearbox.mesh_stiffness)
+        assert (found.torsional.contact.sharing, found.torsional.contact.rate) == ("each", "total")
+
+    def test_teeth_that_are_stiffer_than_teeth_are_refused(self):
+        text = GEARBOX.replace("pinion_teeth: 31", "pinion_teeth: 31\n  shaper_teeth: 33")
+        stiff = re.sub(r"mesh_stiffness_N_per_m: \S+", "mesh_stiffness_N_per_m: 1e10", text)
+        with pytest.raises(
+            DriveFileError, match=r"gearbox.mesh_stiffness_N_per_m must be at most .*got 1e\+10"
+        ):
+            parse_drive(stiff)
 
 
 @pytest.mark.parametrize(
@@ -174,8 +209,20 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
         (
             "mass: 1.0",
             "mass: 1.0\n  contact_ratio: 1.5",
-            r"pinions.contact_ratio must be tregold or geometric, got 1.5",
+            r"pinions.contact_ratio must be usual or tregold or geometric or loaded or unloaded, got 1.5",
         ),
+        (
+            "mass: 1.0",
+            "mass: 1.0\n  contact_ratio: loaded",
+            r"pinions.contact_ratio must be usual, tregold, geometric for a shaper of 26 teeth .* 26, got 'loaded'",
+        ),
+        (
+            "gear_teeth: 130",
+            "gear_teeth: 130\n  shaper_teeth: 25",
+            r"gears.shaper_teeth must be at least 26, got 25",
+        ),
+        ("gear_teeth: 130", "gear_teeth: 130\n  shaper_teeth: false", r"gears.shaper_teeth must .*got False"),
+        ("gear_teeth: 130", "gear_teeth: 130\n  shaper_teeth: 1", r"gears.shaper_teeth must .*10, got 1"),
         (
             "pinion_teeth: 26",
             "pinion_teeth: 26.0",

@@ -18,10 +18,12 @@ from facegear.floquet.modes import mean_growth_rate
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.support.parameters import rad_per_s
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
+LOCALIZED = read_drive_file(DRIVES / "localized.yaml")
 EXAMPLE_B = read_drive_file(DRIVES / "example_b.yaml")
 RANGE = (10.0, 110.0)
 
@@ -36,10 +38,10 @@ class TestDrivenModel:
         """36 of 37 speeds on the true sweep and 35 with Tregold's ratio; none, or 7, where the force is left out."""
         speeds = np.linspace(*CASE_1.requirements.speeds, 37)
         counts = {}
-        for clock, ratio in verdict.clocks(CASE_1).items():
+        for name, contact in CASE_1.contacts.items():
             for force in ("follower", "dead"):
-                model = verdict.driven(CASE_1, force, ratio)
-                counts[clock, force] = sum(growth_rate(model.system(float(v))) > 0 for v in speeds)
+                model = verdict.driven(CASE_1, force, contact)
+                counts[name, force] = sum(growth_rate(model.system(float(v))) > 0 for v in speeds)
         assert counts == {
             ("Tregold", "follower"): 35,
             ("Tregold", "dead"): 7,
@@ -48,7 +50,7 @@ class TestDrivenModel:
         }
 
     def test_carries_the_power_and_all_harmonics(self):
-        model = verdict.driven(EXAMPLE_B, "dead", 1.6)
+        model = verdict.driven(EXAMPLE_B, "dead", Contact(contact_ratio=1.6))
         assert (model.force.power, model.force.pinion_speed) == (
             447.42e3,
             EXAMPLE_B.requirements.pinion_speed,
@@ -56,9 +58,9 @@ class TestDrivenModel:
         assert (model.force.following, model.force.harmonics, model.contact_ratio) == ("dead", 6, 1.6)
 
     def test_flutter_of_the_mean_system_needs_a_following_force(self):
-        ratio = CASE_1.drive.geometric_contact_ratio
+        true_sweep = CASE_1.contacts["true sweep"]
         rates = [
-            mean_growth_rate(verdict.driven(CASE_1, force, ratio).system(80.0))
+            mean_growth_rate(verdict.driven(CASE_1, force, true_sweep).system(80.0))
             for force in ("follower", "dead")
         ]
         assert rates[0] > 0 > rates[1]
@@ -76,14 +78,13 @@ class TestCases:
         assert [case.flutter_share for case in found] == [1.0, 0.0, 1.0, 0.0]
         assert [case.found.unstable_share for case in found] == pytest.approx([1.0, 0.0, 1.0, 0.0])
 
-    def test_of_a_file_that_asks_for_the_true_sweep(self):
-        true = replace(
-            CASE_1,
-            transverse=replace(
-                CASE_1.transverse, contact=Contact(contact_ratio=CASE_1.drive.geometric_contact_ratio)
-            ),
-        )
-        assert list(verdict.clocks(true)) == ["true sweep", "Tregold"]
+    def test_of_teeth_that_touch_at_a_point(self):
+        found = verdict.cases(in_range(LOCALIZED, 700, 760), most_steps=1, jobs=1)
+        assert [case.contact for case in found] == [*2 * ["contact under load"], *2 * ["point contact"]]
+        duty = LOCALIZED.requirements
+        loaded = LoadedContact(LOCALIZED.drive, duty.power / duty.pinion_speed).contact_ratio
+        ratios = [case.found.model.contact_ratio for case in found]
+        assert ratios == pytest.approx([loaded, loaded, 1.557363852, 1.557363852], abs=1e-9)
 
 
 def case(clock, force, *intervals, settled=True, moved=0.004, flutter=0.0):

@@ -33,12 +33,13 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-def test_there_are_five_examples():
+def test_there_are_six_examples():
     assert [path.stem for path in EXAMPLES] == [
         "case_1",
         "case_2",
         "example_b",
         "gearbox_table_7_1",
+        "localized",
         "shaft_angle_85",
     ]
 

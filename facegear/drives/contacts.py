@@ -1,0 +1,86 @@
+"""Contacts that the teeth of a drive file can have: what is not known of a drive, each with its name.
+
+With a shaper of the pinion's teeth contact is along lines, and the dissertation gives it Tregold's contact ratio; with
+a larger one it is at a point without load, and spreads under it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from facegear.geometry.drive import Drive
+from facegear.mechanics.contact import SKEW_LINE, Contact
+from facegear.mechanics.paths import loaded_contact, point_contact
+from facegear.mechanics.torsional import mesh_stiffness
+from facegear.support.parameters import Material
+
+NAMES: Mapping[str, str] = MappingProxyType(
+    {
+        "tregold": "Tregold",
+        "geometric": "true sweep",
+        "unloaded": "point contact",
+        "loaded": "contact under load",
+    }
+)
+"""What a report calls the contacts of a drive file."""
+
+# Correction c_f of the stiffness of the teeth where nothing is known (table 7.1).
+_CORRECTION = 0.5
+
+
+def correction_of(drive: Drive, pair_stiffness: float, material: Material) -> float:
+    """c_f at which a pair of teeth has a stiffness k_m [N/m] (7-2).
+
+    Raises
+    ------
+    ValueError
+        If it has none.
+    """
+    most = mesh_stiffness(drive, 1.0, material)
+    if pair_stiffness > most:
+        raise ValueError(
+            f"mesh_stiffness must be at most {most:.4g} N/m, that of the teeth alone (7-2), for contact under load, "
+            f"got {pair_stiffness:.4g} N/m"
+        )
+    return pair_stiffness / most
+
+
+def transverse_contacts(
+    drive: Drive, torque: float, material: Material, correction_factor: float | None = None
+) -> dict[str, Contact]:
+    """Contacts of a drive for the transverse model, the usual one first.
+
+    Parameters
+    ----------
+    drive : Drive
+    torque : float
+        At the pinion [N m].
+    material : Material
+        Of the teeth.
+    correction_factor : float, optional
+        c_f of the stiffness of the teeth (7-2). Default: 0.5.
+
+    Returns
+    -------
+    dict
+        By their names in a drive file.
+    """
+    if drive.has_line_contact:
+        return {
+            "tregold": Contact(),
+            "geometric": Contact(contact_ratio=drive.geometric_contact_ratio),
+        }
+    factor = _CORRECTION if correction_factor is None else correction_factor
+    return {
+        "loaded": Contact(path=loaded_contact(torque, correction_factor=factor, material=material)),
+        "unloaded": Contact(path=point_contact, sharing="mean"),
+    }
+
+
+def in_torsion(contact: Contact, drive: Drive) -> Contact:
+    """Contact of a drive for the torsional model: each pair for itself, as chapter 7 has it, total rate."""
+    if drive.has_line_contact:
+        return replace(SKEW_LINE, contact_ratio=contact.contact_ratio)
+    return replace(contact, sharing="each", rate="total")
