@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 import yaml
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import facegear as fg
 from facegear.mechanics.cases import CASE_1, CASE_2
@@ -93,6 +94,15 @@ def ratio(stored):
         yield anchor("contact_ratio", one.stops() - one.begins(), 1e-10, law=law, more=more, torque=torque)
     for more in (1, 2, 3):
         yield anchor("unloaded", unloaded(contact(1.0, "pair", more)), 1e-11, more=more)
+
+
+def misaligned(stored):
+    for law, torque, error, step in ((0, 10.0, 0, 2), (0, 1000.0, 1, 8), (1, 10.0, 1, 7), (1, 100.0, 0, 9)):
+        name = stored.error_name.values[error]
+        size = repr(float(stored["size"][error, step]))
+        one = contact(torque, ("slice", "pair")[law], **{name: mpmath.mpf(size)})
+        at = {"law": law, "torque": torque, "error": error, "step": step}
+        yield anchor("contact_ratio", one.stops() - one.begins(), 1e-10, **at)
 
 
 def period(stored):
@@ -249,6 +259,38 @@ def faster(stored, rated):
     yield anchor("largest", value, error, contact=0, drive=0)
 
 
+def designed(teeth, thickness, torque, law="slice"):
+    """Body of Fig. 4.9 cut by a larger shaper, and its path under load."""
+    path = fg.loaded_contact(torque, compliance=law)(
+        fg.Drive(teeth, 5 * teeth, float(MODULE), shaper_teeth=teeth + 1)
+    )
+    return fg.Body(path.drive, thickness), path
+
+
+def design_map(stored, teeth):
+    growth = stored.growth_rate.values
+    for row, column in (np.unravel_index(growth.argmax(), growth.shape), (2, 40), (6, 15)):
+        torque, speed = float(stored.torque[row]), float(stored.speed[column])
+        value, error = disk_growth(*designed(teeth, 0.032, torque), speed, 0.8, 1e-5)
+        yield anchor("growth_rate", value, error, torque=torque, speed=speed)
+
+
+def designs(stored):
+    labels = stored.contact_name.values.tolist()
+    for label, case in (("slice 60", 0), ("pair 60", 1), ("pair 1000", 2), ("as printed", 1)):
+        place, teeth = labels.index(label), (25, 28, 32)[case]
+        thickness = float(stored.value_of_largest[place, case])
+        if label == "as printed":
+            body = fg.Body(fg.Drive(teeth, 5 * teeth, float(MODULE)), thickness)
+            path = fg.ContactPath(body.drive)
+        else:
+            law, torque = label.split()
+            body, path = designed(teeth, thickness, float(torque), law)
+        speed = float(stored.speed_of_largest[place, case])
+        value, error = disk_growth(body, path, speed, 0.8, 1e-5)
+        yield anchor("largest", value, error, contact=place, drive=case)
+
+
 # --- gearboxes ----------------------------------------------------------------------------------------------------
 
 
@@ -316,18 +358,47 @@ class Lumped:
         return (state, out) if samples else state
 
 
+KINDS = ("7.9a", "7.11a", "7.11b", "7.12a", "7.12b", "7.13a")
+
+
+def growth_of(lumped, speed):
+    """Growth rate [1/s] at a speed [rpm], and the period [s]."""
+    period = 60.0 / (lumped.box.drive.gear_teeth * speed)
+    scale = np.diag([1.0, 1.0, 1.0, 1e3, 1e3, 1e3])
+    matrix = np.linalg.solve(scale, lumped.run(period, scale, 0.0))
+    return math.log(np.abs(np.linalg.eigvals(matrix)).max()) / period, period
+
+
+def gearbox_tongues(stored):
+    """Borders of the widest tongues with rigid pairs, where motions grow by 1e-7 a period."""
+
+    def beyond(speed, lumped):
+        growth, period = growth_of(lumped, speed)
+        return growth - 1e-7 / period
+
+    labels = stored.attrs["contacts"].split("; ")
+    widths = (stored.upper - stored.lower).values
+    of_pairs = [k for k, contact in enumerate(stored.contact.values) if labels[contact].startswith("pair")]
+    for k in sorted(of_pairs, key=lambda k: -widths[k])[:2]:
+        law, torque = labels[int(stored.contact[k])].split()
+        lumped = Lumped(FIGURES[KINDS[int(stored.gearbox[k])]].gearbox.in_si, float(torque), law)
+        for name, side in (("lower", -1.0), ("upper", 1.0)):
+            # Searched from the middle of the tongue out to where the growth rate is negative.
+            start = float(stored.lower[k] + stored.upper[k]) / 2.0
+            if not 160.5 < float(stored[name][k]) < 999.5:
+                continue
+            end = start + side * 0.75 * float(widths[k])
+            border = brentq(beyond, start, end, args=(lumped,), xtol=1e-7)
+            yield anchor(name, border, 1e-4, tongue=k)
+
+
 def gearbox_growth(stored):
-    kinds = ("7.9a", "7.11a", "7.11b", "7.12a", "7.12b", "7.13a")
     labels = stored.contact_name.values.tolist()
     for row, label in ((3, "slice 1000"), (3, "pair 60"), (1, "pair 1000"), (0, "slice 60")):
         law, torque = label.split()
-        lumped = Lumped(FIGURES[kinds[row]].gearbox.in_si, float(torque), law)
+        lumped = Lumped(FIGURES[KINDS[row]].gearbox.in_si, float(torque), law)
         place = labels.index(label)
-        speed = float(stored.speed_of_largest[row, place])
-        period = 60.0 / (lumped.box.drive.gear_teeth * speed)
-        scale = np.diag([1.0, 1.0, 1.0, 1e3, 1e3, 1e3])
-        matrix = np.linalg.solve(scale, lumped.run(period, scale, 0.0))
-        value = math.log(np.abs(np.linalg.eigvals(matrix)).max()) / period
+        value, period = growth_of(lumped, float(stored.speed_of_largest[row, place]))
         yield anchor("largest", value, RADIUS_TOLERANCE / period, gearbox=row, contact=place)
 
 
@@ -360,6 +431,7 @@ def main() -> None:
     jobs = {
         "ch03_load_pattern": (CONTACT_ROUTE, pattern),
         "ch03_load_ratio": (CONTACT_ROUTE, ratio),
+        "ch03_load_misaligned": (CONTACT_ROUTE, misaligned),
         "ch03_load_period": (CONTACT_ROUTE, period),
         "ch03_load_flank": (CONTACT_ROUTE, flank),
         "ch03_load_swing": (CONTACT_ROUTE, swing),
@@ -367,9 +439,15 @@ def main() -> None:
         "ch03_load_share": (DISK_ROUTE, shares),
         "ch03_load_map_1": (DISK_ROUTE, lambda stored: torque_map(stored, 0, 0.6)),
         "ch03_load_map_2": (DISK_ROUTE, lambda stored: torque_map(stored, 1, 0.25)),
+        **{
+            f"ch03_load_design_{k}": (DISK_ROUTE, lambda stored, teeth=teeth: design_map(stored, teeth))
+            for k, teeth in enumerate((25, 28, 32), start=1)
+        },
+        "ch03_load_designs": (DISK_ROUTE, designs),
         "ch03_load_outside": (DISK_ROUTE, lambda stored: outside(stored, rated)),
         "ch03_load_faster": (DISK_ROUTE, lambda stored: faster(stored, rated)),
         "ch03_load_gearboxes": (GEARBOX_ROUTE, gearbox_growth),
+        "ch03_load_tongues": (GEARBOX_ROUTE, gearbox_tongues),
         "ch03_load_response": (GEARBOX_ROUTE, response),
     }
     for name, (route, compute) in jobs.items():

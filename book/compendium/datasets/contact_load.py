@@ -14,22 +14,25 @@ from compendium.datasets.meshing import describe
 from facegear.floquet.models import Excited, replace_parameter
 from facegear.geometry.drive import Drive
 from facegear.geometry.point_contact import Misalignment, UnloadedContact
+from facegear.maps.parallel import in_processes
 from facegear.maps.response_map import frequency_response
 from facegear.maps.stability_map import stability_map
+from facegear.maps.tracing import tongues
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.paths import loaded_contact
 from facegear.mechanics.torsional import Gearbox, Torsional
 from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import rad_per_s
+from facegear.support.parameters import rad_per_s, rpm
 from facegear.support.types import FloatArray
 
 COMPLIANCES = ("slice", "pair")
-"""The two laws that bound how teeth give way, in the order of the arrays."""
+"""Laws at the two ends of how slices of a tooth hold one another, in the order of the arrays."""
 
 _length = partial(variable, units="m", atol=1e-10)
 _number = partial(variable, units="1", atol=1e-9)
+_speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 
 
@@ -120,6 +123,55 @@ def effective_contact_ratio(
             "law_name": text("law", list(laws), "Law of compliance"),
         },
         {"parameters": describe(drive)},
+    )
+
+
+def misaligned_contact_ratio(
+    drive: Drive, errors: Mapping[str, ArrayLike], torques: ArrayLike, laws: Sequence[str] = COMPLIANCES
+) -> xr.Dataset:
+    """Effective contact ratio against errors of alignment.
+
+    Parameters
+    ----------
+    drive : Drive
+        Its shaper has more teeth than the pinion.
+    errors : mapping of str to array_like
+        Fields of :class:`Misalignment` and their values [m or rad], as many of each.
+    torques : array_like
+        At the pinion [N m].
+    laws : sequence of str
+
+    Returns
+    -------
+    xarray.Dataset
+        ``contact_ratio`` over (law, torque, error, step), ``size`` [m or rad] over (error, step).
+    """
+    torques = np.asarray(torques, dtype=float)
+    sizes = np.array([np.asarray(values, dtype=float) for values in errors.values()])
+    misaligned = [
+        [Misalignment(**{name: float(size)}) for size in row] for name, row in zip(errors, sizes, strict=True)
+    ]
+    ratios = [
+        [
+            [[LoadedContact(drive, torque, m, law).contact_ratio for m in row] for row in misaligned]
+            for torque in torques
+        ]
+        for law in laws
+    ]
+    return xr.Dataset(
+        {
+            "contact_ratio": _number(("law", "torque", "error", "step"), ratios, "Effective contact ratio"),
+            "size": variable(("error", "step"), sizes, "Error of alignment, m or rad", "1", atol=1e-15),
+        },
+        {
+            "law": np.arange(len(laws)),
+            "torque": torques,
+            "error": np.arange(len(errors)),
+            "step": np.arange(sizes.shape[1]),
+            "law_name": text("law", list(laws), "Compliance"),
+            "error_name": text("error", list(errors), "Error of alignment"),
+        },
+        {"parameters": describe(drive, shaper_teeth=drive.generating.pinion_teeth)},
     )
 
 
@@ -392,6 +444,49 @@ def gearbox_growth(
             "gearbox_name": text("gearbox", list(models), "Gearbox of figure"),
             "contact_name": text("contact", contacts, "Contact"),
         },
+    )
+
+
+def gearbox_tongues(
+    models: Mapping[str, Mapping[str, Torsional]], speeds_rpm: tuple[float, float], jobs: int = -1
+) -> xr.Dataset:
+    """Tongues of gearboxes with several contacts, from a growth of 1e-7 a period on: the load is known to that.
+
+    Parameters
+    ----------
+    models : mapping of str to mapping of str to Torsional
+        By gearbox, then by contact.
+    speeds_rpm : tuple of float
+        Range of speed of the face gear [rpm].
+    jobs : int
+
+    Returns
+    -------
+    xarray.Dataset
+        ``lower``, ``upper`` [rpm], ``largest`` growth rate [1/s] over ``tongue``; which gearbox and contact, and the
+        label, in coordinates.
+    """
+    settings = [(box, name) for box, row in models.items() for name in row]
+    low, high = (float(rad_per_s(speed)) for speed in speeds_rpm)
+    search = partial(tongues, threshold=1e-7)
+    found = in_processes(search, [(models[box][name], (low, high)) for box, name in settings], jobs)
+    rows = [(box, name, tongue) for (box, name), part in zip(settings, found, strict=True) for tongue in part]
+    boxes, contacts = list(models), list(next(iter(models.values())))
+    return xr.Dataset(
+        {
+            "lower": _speed("tongue", [rpm(tongue.lower) for *_, tongue in rows], "Lower border"),
+            "upper": _speed("tongue", [rpm(tongue.upper) for *_, tongue in rows], "Upper border"),
+            "largest": _growth(
+                "tongue", [tongue.growth_rate for *_, tongue in rows], "Largest growth rate of the tongue"
+            ),
+        },
+        {
+            "tongue": np.arange(len(rows)),
+            "gearbox": ("tongue", [boxes.index(box) for box, *_ in rows]),
+            "contact": ("tongue", [contacts.index(name) for _, name, _ in rows]),
+            "label": text("tongue", [tongue.label for *_, tongue in rows], "Label of the tongue"),
+        },
+        {"gearboxes": ", ".join(boxes), "contacts": "; ".join(contacts)},
     )
 
 

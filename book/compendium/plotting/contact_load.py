@@ -30,18 +30,20 @@ _LAW = {"slice": "slices, each for itself", "pair": "rigid pairs"}
 _DASH = {"slice": "-", "pair": "--"}
 
 
+_ERRORS = {
+    "offset": ("offset ΔE [µm]", _UM),
+    "gear_axial": ("gear closer [µm]", _UM),
+    "shaft_angle": ("shafts opened [mrad]", 1e3),
+}
+
+
 @styled
 def contact_pattern(data: xr.Dataset, face: tuple[float, float]) -> Figure:
     """Place of the contact and marking band against each error; `face` is its inner and outer end [m]."""
     names = data.error_name.values.tolist()
-    titles = {
-        "offset": ("offset ΔE [µm]", _UM),
-        "gear_axial": ("gear closer [µm]", _UM),
-        "shaft_angle": ("shafts opened [mrad]", 1e3),
-    }
     figure, axes = panels(1, len(names), height=3.4, sharey=True)
     for ax, name, row in zip(axes, names, range(len(names)), strict=True):
-        one, (label, scale) = data.isel(error=row), titles[name]
+        one, (label, scale) = data.isel(error=row), _ERRORS[name]
         size = one["size"] * scale
         ax.axhspan(face[0] * _MM, face[1] * _MM, color=STEEL, alpha=0.35, linewidth=0)
         ax.fill_between(size, one.inner * _MM, one.outer * _MM, color=BLUE, alpha=0.35, linewidth=0)
@@ -78,6 +80,25 @@ def effective_contact_ratio(data: xr.Dataset, plates: xr.Dataset, tregold: float
     ax.plot([], [], "-", color=INK, label=_LAW["slice"])
     ax.plot([], [], "--", color=INK, label=_LAW["pair"])
     ax.legend(loc="center left")
+    return figure
+
+
+@styled
+def misaligned_contact_ratio(data: xr.Dataset) -> Figure:
+    """Effective contact ratio against each error, one colour a torque."""
+    names = data.error_name.values.tolist()
+    figure, axes = panels(1, len(names), height=3.6, sharey=True)
+    for row, (ax, name) in enumerate(zip(axes, names, strict=True)):
+        label, scale = _ERRORS[name]
+        size = data["size"].isel(error=row) * scale
+        for place, law in enumerate(data.law_name.values.tolist()):
+            for torque, colour in zip(data.torque.values.tolist(), (BLUE, GREEN, ORANGE), strict=True):
+                ratio = data.contact_ratio.isel(law=place, error=row).sel(torque=torque)
+                ax.plot(size, ratio, _DASH[law], color=colour, label=f"{torque:g} N m, {_LAW[law]}")
+        ax.set(xlabel=label)
+    axes[0].set_ylabel("effective contact ratio")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2)
     return figure
 
 
@@ -210,10 +231,30 @@ def torque_maps(maps: Sequence[xr.Dataset], titles: Sequence[str]) -> Figure:
             speed, torque, -growth, cmap="cividis", vmin=0.0, vmax=fastest, shading="nearest", rasterized=True
         )
         draw_border(ax, speed, torque, growth)
-        ax.set(yscale="log", xlabel="speed of the face gear [rpm]", title=title)
+        ax.set(yscale="log", title=title)
         ax.grid(False)
     axes[0].set_ylabel("torque at the pinion [N m]")
+    figure.supxlabel("speed of the face gear [rpm]", fontsize="medium")
     figure.colorbar(mesh, ax=axes, label="decay of the slowest motion [1/s]")
+    return figure
+
+
+@styled
+def gearbox_tongues(data: xr.Dataset, speeds_rpm: tuple[float, float]) -> Figure:
+    """Unstable intervals of speed, one panel a gearbox and one line a contact."""
+    boxes, contacts = data.attrs["gearboxes"].split(", "), data.attrs["contacts"].split("; ")
+    figure, axes = panels(2, 3, height=6.0, sharex=True, sharey=True)
+    for number, (ax, box) in enumerate(zip(axes, boxes, strict=True)):
+        own = data.isel(tongue=data.gearbox.values == number)
+        ax.hlines(np.arange(len(contacts)), *speeds_rpm, color=GREY, linewidth=0.8)
+        for low, high, contact in zip(own.lower.values, own.upper.values, own.contact.values, strict=True):
+            # What is narrower than a line of the picture is drawn as one.
+            ax.plot([low, high], [contact, contact], color=VERMILION, linewidth=7.0, solid_capstyle="butt")
+        ax.set(title=f"Fig. {box}", xlim=speeds_rpm)
+        ax.grid(False)
+    axes[0].set_yticks(np.arange(len(contacts)), contacts)
+    axes[0].invert_yaxis()
+    figure.supxlabel("speed of the face gear [rpm]", fontsize="medium")
     return figure
 
 
