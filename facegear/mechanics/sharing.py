@@ -161,7 +161,7 @@ class SharedPath(TimedPairs):
         return float(fourier_series(total, np.array(self.breakpoints), 1).mean.item())
 
     def transmission_error(self, approach: float) -> PiecewiseChebyshev:
-        """Static transmission error: how far the teeth of all pairs give way together under a constant force.
+        """Find the static transmission error: how far the teeth of all pairs give way together under a constant force.
 
         Over the pinion's base radius it is the angle by which the pinion is ahead of where rigid gears would have it,
         as :meth:`facegear.mechanics.loaded_contact.LoadedContact.transmission_error` for pairs of another law.
