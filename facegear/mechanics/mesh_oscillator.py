@@ -22,9 +22,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,7 +37,7 @@ from facegear.geometry.kinematics import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
 from facegear.mechanics.plate import RadialModes
-from facegear.mechanics.transverse import PinionsOnDisk, Transverse, reflection, rotation
+from facegear.mechanics.transverse import PinionsOnDisk, Transverse
 from facegear.support.parameters import designed, finite, finite_array, keep, positive, within
 from facegear.support.types import FloatArray
 
@@ -45,31 +46,6 @@ FOLLOWED = Contact(rate="total")
 
 # Angles [rad] and phases [mesh periods] closer than this are the same.
 _SAME = 1e-6
-
-
-@lru_cache(maxsize=256)
-def mesh_shapes(
-    modes: tuple[RadialModes, ...], contact: Contact, drive: Drive
-) -> tuple[PiecewiseChebyshev, ...]:
-    """Shape vectors of the loads of a mesh at angle 0 against t/T0: of the disk on unit outer radius, and of the pinion.
-
-    Parameters
-    ----------
-    modes : tuple of RadialModes
-        `modes` of the body.
-    contact : Contact
-    drive : Drive
-
-    Returns
-    -------
-    tuple of PiecewiseChebyshev
-        n components φ R2 [-] and one for the pinion, 1; all of them 0 while there is no load.
-    """
-
-    def vector(x: FloatArray, angle: FloatArray) -> FloatArray:
-        return np.concatenate([unit_shape(modes, x, angle), np.ones((*x.shape, 1))], axis=-1)
-
-    return tuple(place.shape(vector) for place in contact.places(drive))
 
 
 @dataclass(frozen=True)
@@ -138,8 +114,8 @@ class MeshOscillator(PinionsOnDisk):
         super().__post_init__()
         if self.contact.rate != "total":
             raise ValueError(
-                'contact.rate must be "total" where the spring of the teeth has an end of its own, which moves with the '
-                f"contact, got {self.contact.rate!r}"
+                'contact.rate must be "total" where the spring of the teeth has an end of its own, which moves with '
+                f"the contact, got {self.contact.rate!r}"
             )
         if self.load.mass == 0.0:
             raise ValueError(
@@ -208,37 +184,17 @@ class MeshOscillator(PinionsOnDisk):
     @cached_property
     def loads(self) -> tuple[ContactLoad, ...]:
         """Loads of all meshes, divided by 2πρh as those of (4-8), pinion by pinion."""
-        drive = self.body.drive
         # A load whose path says nothing stands for one pair, or as the only one for all of them.
         pairs = 1.0 if self.contact.sharing == "each" else self.contact_ratio
         unit = self.axial_stiffness / modal_mass(self.body)
-        mesh = []
-        for shape, place in zip(
-            mesh_shapes(self.body.modes, self.contact, drive), self.contact.places(drive), strict=True
-        ):
-            stiffness = unit * (pairs if place.weight is None else 1.0)
-            damping = self.mesh_damping * stiffness
-            mesh.append(ContactLoad(shape, stiffness, damping, rate="total", weight=place.weight))
-        return tuple(
-            replace(
-                load,
-                shape=load.shape.transformed(self._placed(number)).shift(phase),
-                weight=None if load.weight is None else load.weight.shift(phase),
-            )
-            for number, phase in enumerate(self.mesh_phases)
-            for load in mesh
-        )
-
-    def _placed(self, number: int) -> FloatArray:
-        """Matrix from shape vectors of :func:`mesh_shapes` to those of u under one of the pinions, (n + p, n + 1)."""
-        disk = rotation(self.body, self.pinion_angles[number])
-        if self.contact.travel == "with_disk":
-            disk = reflection(self.body) @ disk
-        n, face = len(disk), self.faces[number]
-        placed = np.zeros((n + len(self.pinion_angles), n + 1))
-        placed[:n, :n] = face * disk / self.body.outer_radius
-        placed[n + number, n] = -face
-        return placed
+        found = []
+        for number, phase in enumerate(self.mesh_phases):
+            pinion = _Pinion(number, len(self.faces), self.pinion_angles[number], phase, self.faces[number])
+            for shape, weight in _mesh(self.body.modes, self.contact, self.body.drive, pinion):
+                stiffness = unit * (pairs if weight is None else 1.0)
+                damping = self.mesh_damping * stiffness
+                found.append(ContactLoad(shape, stiffness, damping, rate="total", weight=weight))
+        return tuple(found)
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed, divided by 2πρh as (4-8).
@@ -278,3 +234,34 @@ def _checked_sides(sides: Sequence[int], pinions: int) -> tuple[int, ...]:
             f"sides must list 1 (front) or -1 (back) for each of {pinions} pinions, got {sides!r}"
         )
     return tuple(int(side) for side in array)
+
+
+class _Pinion(NamedTuple):
+    """Which pinion of how many, and where: θ_c [rad], ψ [mesh periods], face."""
+
+    number: int
+    pinions: int
+    angle: float
+    phase: float
+    face: int
+
+
+@lru_cache(maxsize=256)
+def _mesh(
+    modes: tuple[RadialModes, ...], contact: Contact, drive: Drive, pinion: _Pinion
+) -> tuple[tuple[PiecewiseChebyshev, PiecewiseChebyshev | None], ...]:
+    """Shape vector of u of each load under a pinion, and its weight, against t/T0.
+
+    Neither depends on thickness, masses or bearings: models that differ in these share them, and maps know that.
+    """
+
+    def vector(x: FloatArray, angle: FloatArray) -> FloatArray:
+        disk = unit_shape(modes, x, angle) / drive.outer_radius
+        pinions = np.zeros((*x.shape, pinion.pinions))
+        pinions[..., pinion.number] = -1.0
+        return pinion.face * np.concatenate([disk, pinions], axis=-1)
+
+    places = (place.rotated(pinion.angle).shifted(pinion.phase) for place in contact.places(drive))
+    if contact.travel == "with_disk":
+        places = (place.mirrored() for place in places)
+    return tuple((place.shape(vector), place.weight) for place in places)
