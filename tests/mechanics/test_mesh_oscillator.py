@@ -309,10 +309,10 @@ class TestAsAnyModel:
         assert replace_parameter(BOTH, "mass", 0.5).pinion_mass == pytest.approx(0.5 * BOTH.pinion_mass)
         assert replace_parameter(BOTH, "stiffness", 0.5).load.stiffness == 0.5
 
-    @pytest.mark.parametrize("parameter", ["mesh_stiffness", "stiffness", "clocking"])
+    @pytest.mark.parametrize("parameter", ["stiffness", "clocking"])
     def test_map(self, parameter):
         face = model(pinion_angles=(0.0, 0.0), sides=(1, -1), clocking=0.25)
-        start = {"mesh_stiffness": TEETH, "stiffness": 0.7, "clocking": 0.25}[parameter]
+        start = {"stiffness": 0.7, "clocking": 0.25}[parameter]
         values, speeds = start * np.array([0.8, 1.0]), fg.rad_per_s(np.array([500.0, 600.0]))
         chart = fg.stability_map(face, speeds, parameter, values, jobs=1, progress=False)
         expected = growth_rate(replace_parameter(face, parameter, values[0]).system(float(speeds[1])))
@@ -325,7 +325,7 @@ class TestAsAnyModel:
         assert BOTH.system(SPEED).size == len(BOTH.coordinates)
 
 
-@settings(deadline=None, derandomize=True, max_examples=15)
+@settings(deadline=None, derandomize=True, max_examples=8)
 @given(
     stiffness=st.floats(1e5, 1e9),
     damping=st.floats(1e-7, 1e-4),
