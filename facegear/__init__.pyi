@@ -27,12 +27,15 @@ from .mechanics.contact import Contact as Contact
 from .mechanics.edge_stiffness import DrivingForce as DrivingForce
 from .mechanics.inplane import EdgeLoadStress as EdgeLoadStress
 from .mechanics.loaded_contact import LoadedContact as LoadedContact
+from .mechanics.mesh_oscillator import MeshOscillator as MeshOscillator
 from .mechanics.paths import line_contact as line_contact
 from .mechanics.paths import loaded_contact as loaded_contact
 from .mechanics.paths import point_contact as point_contact
 from .mechanics.plate import Body as Body
+from .mechanics.sharing import shared_load as shared_load
 from .mechanics.torsional import Gearbox as Gearbox
 from .mechanics.torsional import Torsional as Torsional
+from .mechanics.torsional import mesh_stiffness as mesh_stiffness
 from .mechanics.transverse import Transverse as Transverse
 from .support.parameters import STEEL as STEEL
 from .support.parameters import MeshLoad as MeshLoad
@@ -53,6 +56,7 @@ __all__ = [
     "Gearbox",
     "LoadedContact",
     "MeshLoad",
+    "MeshOscillator",
     "Misalignment",
     "PeriodicSystem",
     "PiecewiseChebyshev",
@@ -68,6 +72,7 @@ __all__ = [
     "growth_rate",
     "line_contact",
     "loaded_contact",
+    "mesh_stiffness",
     "multipliers",
     "phase_split",
     "point_contact",
@@ -77,6 +82,7 @@ __all__ = [
     "resonance_bands",
     "response_map",
     "rpm",
+    "shared_load",
     "stability_map",
     "steady_response",
     "tongues",

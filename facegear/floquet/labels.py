@@ -9,6 +9,7 @@ response that forces cause is large where one of them is in step with a harmonic
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.floquet.collocation import UnsuitableSystemError, transition_matrices_to
+from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.multipliers import Method, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
@@ -140,6 +142,46 @@ def combination(system: PeriodicSystem, method: Method | None = None) -> Combina
     for state in _critical_motion(system, complex(values[critical]), vectors[:, critical], method):
         action += modes.action(state)
     return _strongest_pair(modes, action, 2.0 * np.pi / system.period)
+
+
+def moving_parts(system: PeriodicSystem, coordinates: Sequence[Coordinate]) -> tuple[str, ...]:
+    """Name the part that moves most in each natural motion of the mean system.
+
+    Parameters
+    ----------
+    system : PeriodicSystem
+    coordinates : sequence of Coordinate
+        Of the model that the system is of.
+
+    Returns
+    -------
+    tuple of str
+        `Coordinate.part` with the largest kinetic energy, or the name where that is empty, of the motions 1, 2, 3 ...
+        in the order of the numbers of a :class:`Combination`.
+
+    Raises
+    ------
+    ValueError
+        If there is not one coordinate for each of the system.
+
+    Examples
+    --------
+    >>> from facegear.floquet.periodic import PeriodicSystem
+    >>> apart = PeriodicSystem(np.eye(2), np.zeros((2, 2)), np.diag([9.0, 1.0]), (), 1.0)
+    >>> moving_parts(apart, [Coordinate("w", "m", "disk"), Coordinate("x", "m", "pinion")])
+    ('pinion', 'disk')
+    """
+    if len(coordinates) != system.size:
+        raise ValueError(
+            f"coordinates must be {system.size}, one a row of the system's matrices; got {len(coordinates)}"
+        )
+    motions = NaturalMotions.of_mean(system)
+    velocities = motions.velocities[:, motions.oscillating]
+    energies = (velocities.conj() * (motions.mass @ velocities)).real
+    owners = [coordinate.part or coordinate.name for coordinate in coordinates]
+    parts = list(dict.fromkeys(owners))
+    shares = np.stack([energies[[owner == part for owner in owners]].sum(axis=0) for part in parts])
+    return tuple(parts[number] for number in shares.argmax(axis=0).tolist())
 
 
 @dataclass(frozen=True, eq=False)

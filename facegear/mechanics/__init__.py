@@ -1,9 +1,9 @@
 """Mechanical models that become a `PeriodicSystem` at each speed.
 
-Where teeth press and when (`contact`), under load with the teeth's compliance (`loaded_contact`, `compliance`,
-`tooth_plate`), the spinning disk under its pinions (`plate`, `mode_shapes`, `disk`,
-`transverse`, `rotation`; chapters 4 and 5) and under a force at its rim (`inplane`, `edge_stiffness`; 6), the gearbox
-in torsion (`torsional`; 7), the classical equations (`classical`; 2), the dissertation's own drives (`cases`,
-`gearboxes`).
-Public: `Body`, `Contact`, `DrivingForce`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`.
+Where teeth press and when (`contact`), how they share the load by a rule (`sharing`) or under load with their own
+compliance (`loaded_contact`, `compliance`, `tooth_plate`), the spinning disk under its pinions (`plate`, `mode_shapes`,
+`disk`, `transverse`, `rotation`; chapters 4 and 5), under a force at its rim (`inplane`, `edge_stiffness`; 6) and under
+pinions on the springs of their teeth (`mesh_oscillator`; 8), the gearbox in torsion (`torsional`; 7), the classical
+equations (`classical`; 2), the dissertation's own drives (`cases`, `gearboxes`).
+Public: `Body`, `Contact`, `DrivingForce`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`, `MeshOscillator`.
 """

@@ -38,6 +38,7 @@ from facegear.mechanics.disk import (
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body, RadialModes
 from facegear.support.parameters import MeshLoad, designed, finite_array, keep, positive, within
+from facegear.support.types import FloatArray
 
 
 def nominal_pinion_mass(body: Body) -> float:
@@ -102,40 +103,8 @@ def mirrored(body: Body, shape: PiecewiseChebyshev) -> PiecewiseChebyshev:
 
 
 @dataclass(frozen=True)
-class Transverse:
-    """Transverse vibration of a face gear under one or more equal pinions (4-8, 5-6, 6-25).
-
-    Parameters
-    ----------
-    body : Body
-        Disk and modes.
-    load : MeshLoad
-        μ, ζ, τ of every pinion (4-17 to 4-19).
-    pinion_angles : sequence of float
-        θ_c of each pinion [rad], between -2π and 2π, all different unless `phases` are given. What is left of an angle
-        after whole teeth sets the phase of the pinion's mesh (5-1 to 5-4).
-    contact : Contact
-        How the teeth touch, the same for all pinions, with one load a pinion. Default as printed: at the centroid of
-        the contact lines, with Tregold's contact ratio and frozen rate.
-    force : DrivingForce, optional
-        In the plane of the disk (4-21), the same for all pinions. Default: none.
-    phases : sequence of float, optional
-        Phase of each pinion's mesh [mesh periods], in place of that of its angle: for gears whose teeth are clocked
-        otherwise, as those on the other face.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is of the wrong kind or outside its range.
-
-    Examples
-    --------
-    >>> from facegear.geometry.drive import Drive
-    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
-    >>> model = Transverse(body, MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
-    >>> model.system(speed=50.0).size
-    14
-    """
+class PinionsOnDisk:
+    """What every model of a disk under equal pinions is made of; arguments are explained at :class:`Transverse`."""
 
     body: Body
     load: MeshLoad
@@ -154,17 +123,7 @@ class Transverse:
             raise TypeError(f"force must be a DrivingForce or None, got {self.force!r}")
         if self.force is not None:
             self.force.require(self.body)
-        if self.contact.sharing == "each":
-            raise ValueError(
-                f'sharing must be "centroid" or "mean" for one load a pinion, got {self.contact.sharing!r}'
-            )
         self.contact.require(self.body.drive)
-        if self.contact.rate == "total" and self.contact.sharing == "mean" and self.load.mass > 0.0:
-            raise ValueError(
-                'sharing must be "centroid" where a pinion with a mass follows its contact (rate = "total"): the mean '
-                f"jumps as pairs enter and leave, and no mass can; got {self.contact.sharing!r} with "
-                f"load.mass={self.load.mass!r}"
-            )
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
         if angles.ndim != 1 or angles.size == 0:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
@@ -176,18 +135,6 @@ class Transverse:
             if phases.shape != angles.shape:
                 raise ValueError(f"phases must list one a pinion, {angles.size}, got {self.phases!r}")
             keep(self, phases=tuple(phases.tolist()))
-            return
-        gaps = np.diff(np.sort(np.mod(angles, 2 * math.pi)), append=0.0)
-        gaps[-1] = 2 * math.pi - np.ptp(np.mod(angles, 2 * math.pi))
-        if gaps.min() < 1e-6:
-            raise ValueError(
-                f"pinion_angles must differ from one another, unless phases are given, got {self.pinion_angles!r}"
-            )
-
-    @property
-    def coordinates(self) -> tuple[Coordinate, ...]:
-        """Modes of the disk."""
-        return disk_coordinates(self.body)
 
     @property
     def contact_ratio(self) -> float:
@@ -224,16 +171,92 @@ class Transverse:
         """m_p = τ times the nominal pinion mass [kg] (4-19)."""
         return self.load.mass * nominal_pinion_mass(self.body)
 
+    @property
+    def mesh_phases(self) -> tuple[float, ...]:
+        """Phase ψ of each pinion's mesh [mesh periods]: `phases` if given, else those of the angles (5-1, 5-2)."""
+        if self.phases is not None:
+            return tuple(self.phases)
+        return tuple(phase_split(self.body.drive, self.pinion_angles).phase.tolist())
+
+    def disk_matrices(self, speed: float) -> tuple[FloatArray, FloatArray]:
+        """Damping and stiffness of the disk under the driving forces alone at Ω2 [rad/s], each (n, n)."""
+        damping, stiffness = disk_matrices(self.body, speed)
+        if self.force is not None and self.force.power > 0.0:
+            angles = tuple(self.contact.sense * angle for angle in self.pinion_angles)
+            stiffness = stiffness + self.force.stiffness(self.body, speed, angles)
+        return damping, stiffness
+
+
+@dataclass(frozen=True)
+class Transverse(PinionsOnDisk):
+    """Transverse vibration of a face gear under one or more equal pinions (4-8, 5-6, 6-25).
+
+    Parameters
+    ----------
+    body : Body
+        Disk and modes.
+    load : MeshLoad
+        μ, ζ, τ of every pinion (4-17 to 4-19).
+    pinion_angles : sequence of float
+        θ_c of each pinion [rad], between -2π and 2π, all different unless `phases` are given. What is left of an angle
+        after whole teeth sets the phase of the pinion's mesh (5-1 to 5-4).
+    contact : Contact
+        How the teeth touch, the same for all pinions, with one load a pinion. Default as printed: at the centroid of
+        the contact lines, with Tregold's contact ratio and frozen rate.
+    force : DrivingForce, optional
+        In the plane of the disk (4-21), the same for all pinions. Default: none.
+    phases : sequence of float, optional
+        Phase of each pinion's mesh [mesh periods], in place of that of its angle: for gears whose teeth are clocked
+        otherwise, as those on the other face.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range.
+
+    Examples
+    --------
+    >>> from facegear.geometry.drive import Drive
+    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = Transverse(body, MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> model.system(speed=50.0).size
+    14
+    """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.contact.sharing == "each":
+            raise ValueError(
+                f'sharing must be "centroid" or "mean" for one load a pinion, got {self.contact.sharing!r}'
+            )
+        if self.contact.rate == "total" and self.contact.sharing == "mean" and self.load.mass > 0.0:
+            raise ValueError(
+                'sharing must be "centroid" where a pinion with a mass follows its contact (rate = "total"): the mean '
+                f"jumps as pairs enter and leave, and no mass can; got {self.contact.sharing!r} with "
+                f"load.mass={self.load.mass!r}"
+            )
+        if self.phases is not None:
+            return
+        angles = np.mod(self.pinion_angles, 2 * math.pi)
+        gaps = np.diff(np.sort(angles), append=0.0)
+        gaps[-1] = 2 * math.pi - np.ptp(angles)
+        if gaps.min() < 1e-6:
+            raise ValueError(
+                f"pinion_angles must differ from one another, unless phases are given, got {self.pinion_angles!r}"
+            )
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Modes of the disk."""
+        return disk_coordinates(self.body)
+
     @cached_property
     def shapes(self) -> tuple[PiecewiseChebyshev, ...]:
         """Shape vector at each pinion's contact point against t/T0 (5-4)."""
-        drive = self.body.drive
-        first = contact_shape(self.body.modes, self.contact, drive)
-        own = phase_split(drive, self.pinion_angles).phase
-        phases = own if self.phases is None else self.phases
+        first = contact_shape(self.body.modes, self.contact, self.body.drive)
         shapes = (
             rotated(self.body, first, angle).shift(phase)
-            for angle, phase in zip(self.pinion_angles, phases, strict=True)
+            for angle, phase in zip(self.pinion_angles, self.mesh_phases, strict=True)
         )
         if self.contact.travel == "with_disk":
             shapes = (mirrored(self.body, shape) for shape in shapes)
@@ -258,10 +281,7 @@ class Transverse:
             If `speed` is not a finite number greater than 0.
         """
         speed = positive("speed", speed, "rad/s")
-        damping, stiffness = disk_matrices(self.body, speed)
-        if self.force is not None and self.force.power > 0.0:
-            angles = tuple(self.contact.sense * angle for angle in self.pinion_angles)
-            stiffness = stiffness + self.force.stiffness(self.body, speed, angles)
+        damping, stiffness = self.disk_matrices(speed)
         scale = modal_mass(self.body)
         stiffness_b, damping_b, mass_p = (
             value / scale for value in (self.bearing_stiffness, self.bearing_damping, self.pinion_mass)

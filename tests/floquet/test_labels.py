@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from facegear.floquet.hsu import band_speeds, resonance_bands
-from facegear.floquet.labels import Combination, combination
+from facegear.floquet.labels import Combination, combination, moving_parts
+from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.maps.tracing import tongues
+from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
@@ -115,3 +117,45 @@ def test_flutter_of_the_mean_system_is_told_from_resonance():
 def test_labels():
     assert Combination(1, 3, "sum", 2).label == "(1+3)/2"
     assert Combination(1, 3, "difference", 2).label == "(3-1)/2"
+
+
+def test_parts_of_the_natural_motions():
+    """Two masses on a weak spring each move by themselves; a strong one takes both along, and the heavier has more."""
+    names = [Coordinate("a", "m", "light"), Coordinate("b", "m", "heavy")]
+    spring = ContactLoad(PiecewiseChebyshev.constant([1.0, -1.0]), stiffness=0.01)
+    ground = np.diag([4.0, 9.0])
+    built = PeriodicSystem(np.diag([1.0, 1.5]), np.zeros((2, 2)), ground, (spring,), 1.0)
+    assert moving_parts(built, names) == ("light", "heavy")
+    tight = replace(built, loads=(replace(spring, stiffness=1e3),))
+    assert moving_parts(tight, names) == ("heavy", "light")
+    assert moving_parts(built, [replace(each, part="") for each in names]) == ("a", "b")
+    still = replace(built, damping=np.diag([100.0, 0.1]))
+    assert moving_parts(still, names) == ("heavy",)
+    with pytest.raises(ValueError, match="coordinates must be 2, one a row of the system's matrices; got 1"):
+        moving_parts(built, names[:1])
+
+
+def test_coordinates_of_one_part_count_together():
+    names = [Coordinate("a", "m", "disk"), Coordinate("b", "m", "disk"), Coordinate("c", "m", "pinion")]
+    # The pinion has the largest share of one coordinate in the first motion, and most of all in the second.
+    first = np.sqrt([0.30, 0.25, 0.45])
+    second = np.array([0.0, 0.0, 1.0]) - first[2] * first
+    turned = np.stack(
+        [first, second / np.linalg.norm(second), np.cross(first, second / np.linalg.norm(second))], 1
+    )
+    np.testing.assert_allclose(turned.T @ turned, np.eye(3), atol=1e-14)
+    stiffness = turned @ np.diag([1.0, 4.0, 9.0]) @ turned.T
+    built = PeriodicSystem(np.eye(3), np.zeros((3, 3)), stiffness, (), 1.0)
+    assert moving_parts(built, names) == ("disk", "pinion", "disk")
+
+
+def test_tongues_between_the_disk_and_a_pinion_on_its_bearing_are_named_after_both():
+    body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03, nodal_circles=0, nodal_diameters=2)
+    load = MeshLoad(stiffness=0.7, damping=1e-6, mass=1.0)
+    model = MeshOscillator(body, load, mesh_stiffness=2e7, mesh_damping=1e-6)
+    (wave,) = (t for t in tongues(model, tuple(rad_per_s(np.array([285.0, 300.0])))) if t.label == "(1+6)/1")
+    parts = moving_parts(model.system(wave.peak), model.coordinates)
+    assert (parts[wave.combination.k - 1], parts[wave.combination.j - 1]) == ("pinion", "face gear")
+    # On a heavier pinion the number of its motion is the same, on a lighter one another.
+    light = replace(model, load=replace(load, mass=0.2))
+    assert moving_parts(light.system(wave.peak), light.coordinates).index("pinion") > 0

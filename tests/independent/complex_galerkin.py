@@ -254,6 +254,81 @@ def total_rate_multipliers(
     return np.linalg.eigvals(X * scale[:, None])
 
 
+@dataclass(frozen=True, eq=False)
+class Spring:
+    """Teeth between the disk and one pinion: where they press, and what part of k_z and c_z they then have."""
+
+    place: Pinion
+    weight: Callable[[np.ndarray], np.ndarray]
+    pinion: int = 0
+
+
+def oscillator_multipliers(
+    disk: ComplexDisk,
+    springs: Sequence[Spring],
+    speed: float,
+    period: float,
+    *,
+    m_p: float,
+    c_b: float,
+    k_b: float,
+    c_z: float,
+    k_z: float,
+    tolerance: float = 1e-12,
+) -> np.ndarray:
+    """Eigenvalues of the transition matrix when pinions m_p w'' + c_b w' + k_b w = F hang on springs of the teeth.
+
+    F = s (c_z u' + k_z u) with u = w(r_c(t), θ_c(t), t) - w_m and u' its whole derivative presses on the disk with the
+    opposite sign. State: η, η' and, in metres, w_m and w_m'.
+    """
+    _, C0, K0 = disk.constant_matrices(speed)
+    n, count = len(K0), 1 + max(spring.pinion for spring in springs)
+    modal_mass = 2 * np.pi * disk.rho * disk.h
+    frequency = np.sqrt(np.abs(K0).max())
+    # w_m in units in which it weighs as much as a mode.
+    unit = np.concatenate([np.ones(n), np.full(count, np.sqrt(modal_mass / m_p))])
+    scale = np.concatenate([frequency / unit, 1 / unit])
+    instants = np.unique([0.0, 1.0, *(x for spring in springs for x in spring.place.instants)])
+    instants = np.concatenate([[0.0], instants[1:][np.diff(instants) > 1e-10]])
+    instants[-1] = 1.0
+    X = np.eye(2 * (n + count), dtype=complex)
+    for start, end in pairwise(instants):
+        tables = []
+        for spring in springs:
+            if np.any(spring.weight(np.array([(start + end) / 2])) != 0.0):
+                weight = chebyshev.Chebyshev.interpolate(
+                    lambda x, spring=spring: spring.weight(np.clip(x, start + 1e-15, end - 1e-15)),  # noqa: B023
+                    80,
+                    [start, end],
+                )
+                tables.append((spring.pinion, weight, *_shape_series(disk, spring.place, start, end)))
+
+        def rates(t: float, flat: np.ndarray, tables=tables) -> np.ndarray:
+            Y = flat.reshape(2 * (n + count), -1) / scale[:, None]
+            eta, w, eta_t, w_t = np.split(Y, [n, n + count, 2 * n + count])
+            disk_force = -C0 @ eta_t - K0 @ eta
+            pinion_force = -c_b * w_t - k_b * w
+            for number, weight, phi, slope in tables:
+                f, f_dot = phi(t / period), slope(t / period) / period
+                u, u_dot = f @ eta - w[number], f @ eta_t + f_dot @ eta - w_t[number]
+                force = weight(t / period) * (c_z * u_dot + k_z * u)
+                disk_force -= np.outer(f.conj(), force) / modal_mass
+                pinion_force[number] += force
+            return (np.concatenate([eta_t, w_t, disk_force, pinion_force / m_p]) * scale[:, None]).ravel()
+
+        solution = solve_ivp(
+            rates,
+            (start * period, end * period),
+            (X * scale[:, None]).ravel(),
+            method="DOP853",
+            rtol=tolerance,
+            atol=tolerance * frequency,
+        )
+        assert solution.success, solution.message
+        X = solution.y[:, -1].reshape(X.shape) / scale[:, None]
+    return np.linalg.eigvals(X * scale[:, None] / scale[None, :])
+
+
 def _shape_series(disk: ComplexDisk, pinion: Pinion, start: float, end: float):
     """Series of R_mn(r_c) e^{inθc} in t/T0 on one smooth piece, and its derivative by t/T0."""
     n = np.repeat(disk.waves, disk.M + 1)
