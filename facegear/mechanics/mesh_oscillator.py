@@ -55,8 +55,7 @@ class MeshOscillator(PinionsOnDisk):
     Parameters
     ----------
     body : Body
-        Disk and modes. The pinion's own vibration lies higher than what M = 1, N = 3 resolves: see that results have
-        converged.
+        Disk and modes. Stiff teeth bring in higher modes than M = 1, N = 3 has: see that results have converged.
     load : MeshLoad
         μ, ζ, τ of every pinion (4-17 to 4-19); τ greater than 0.
     pinion_angles : sequence of float
