@@ -49,6 +49,7 @@ CHAPTERS = [path.stem for path in NOTEBOOKS if path.stem < "90"]
 LONGEST = (
     "04_design",
     "03_contact_under_load",
+    "08_transverse",
     "04_one_pinion",
     "05_multiple_pinions",
     "06_in_plane_force",

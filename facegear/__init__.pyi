@@ -37,6 +37,7 @@ from .mechanics.torsional import Gearbox as Gearbox
 from .mechanics.torsional import Torsional as Torsional
 from .mechanics.torsional import mesh_stiffness as mesh_stiffness
 from .mechanics.transverse import Transverse as Transverse
+from .mechanics.two_gears import TwoGears as TwoGears
 from .support.parameters import STEEL as STEEL
 from .support.parameters import MeshLoad as MeshLoad
 from .support.parameters import rad_per_s as rad_per_s
@@ -64,6 +65,7 @@ __all__ = [
     "StateJump",
     "Torsional",
     "Transverse",
+    "TwoGears",
     "UnloadedContact",
     "WithoutRigidMotion",
     "critical_thickness",

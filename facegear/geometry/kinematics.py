@@ -201,6 +201,20 @@ class TimedPairs(ABC):
         """Relative errors that a fit of the positions may have, shape (pieces,) [-]."""
         return np.full(len(self.breakpoints), _TOLERANCE)
 
+    @property
+    def pitch_passage(self) -> float:
+        """Mesh periods since entry at which a pair passes the pitch point.
+
+        Raises
+        ------
+        ValueError
+            If the path does not say it.
+        """
+        raise ValueError(
+            f"path must say when a pair passes the pitch point for a pinion that is driven, and {type(self).__name__} "
+            "does not: give it a pitch_passage"
+        )
+
     def require_followable(self, name: str, mean: bool) -> None:  # noqa: B027 (nothing to refuse is an answer)
         """Refuse a contact whose speed has no limit, for what has to follow it.
 
@@ -239,6 +253,11 @@ class ContactPath(TimedPairs):
     def __post_init__(self) -> None:
         self.drive.require_line_contact(type(self).__name__)
         super().__post_init__()
+
+    @property
+    def pitch_passage(self) -> float:
+        """Mesh periods since entry at which a pair passes the pitch point."""
+        return _pitch_passage(self.drive, self.contact_ratio)
 
     @property
     def angular_travel(self) -> float:
@@ -504,6 +523,11 @@ class SkewLine(TimedPairs):
     """
 
     @property
+    def pitch_passage(self) -> float:
+        """Mesh periods since entry at which a pair of the true contact lines between the same ends does."""
+        return _pitch_passage(self.drive, self.contact_ratio)
+
+    @property
     def slope(self) -> float:
         """dr_j/dx of a pair in contact [m per mesh period]; over T0 its derivative to time."""
         return (self.drive.inner_radius - self.drive.outer_radius) / self.contact_ratio
@@ -511,6 +535,12 @@ class SkewLine(TimedPairs):
     def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
         radius = np.where(in_mesh, self.drive.outer_radius + self.slope * ages, 0.0)
         return PairStates(np.asarray(in_mesh), radius, np.zeros(ages.shape), np.zeros(ages.shape))
+
+
+def _pitch_passage(drive: Drive, contact_ratio: float) -> float:
+    """Mesh periods since entry at which a pair passes the pitch point: φs a quarter pitch before a space is upright."""
+    sweep = drive.entry_rotation - drive.exit_rotation
+    return (drive.entry_rotation + 0.5 * math.pi / drive.pinion_teeth) / sweep * contact_ratio
 
 
 def mesh_period(drive: Drive, gear_speed: float) -> float:

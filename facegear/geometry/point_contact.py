@@ -509,6 +509,12 @@ class PointPath(TimedPairs):
     def _contact(self) -> UnloadedContact:
         return UnloadedContact(self.drive)
 
+    @property
+    def pitch_passage(self) -> float:
+        """Mesh periods since entry at which a pair passes the pitch point, where the roll angle is tan α_c."""
+        first, last = self._contact.rolls
+        return float((math.tan(self.drive.pressure_angle) - first) / (last - first)) * self.contact_ratio
+
     def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
         first, last = self._contact.rolls
         roll = first + (last - first) * ages / self.contact_ratio

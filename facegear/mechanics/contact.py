@@ -138,6 +138,17 @@ class Contact:
         """
         return _places(self.path, self.sharing, drive, self.contact_ratio)
 
+    def coasting_places(self, drive: Drive) -> tuple[LoadPlace, ...]:
+        """As :meth:`places`, for a pinion at angle 0 that is driven: on the other flanks of the teeth.
+
+        Raises
+        ------
+        ValueError
+            If the path does not say when a pair passes the pitch point.
+        """
+        passage = _path(self.path, drive, self.contact_ratio).pitch_passage
+        return tuple(place.coasting(passage) for place in self.places(drive))
+
 
 CENTROID = Contact()
 """Contact as chapters 4 to 6 have it: at the centroid of the contact lines (3-21), frozen rate."""
@@ -201,6 +212,20 @@ class LoadPlace:
     def mirrored(self) -> LoadPlace:
         """Return the place at the opposite angle: that of the other face, or of the other flank."""
         return replace(self, position=self.position.transformed(np.diag([1.0, -1.0])))
+
+    def coasting(self, pitch_passage: float) -> LoadPlace:
+        """Return the place on the other flank of the teeth, that of a pinion which is driven.
+
+        Mirrored in the plane of both axes, which reverses the pinion, a mesh is one of the other flanks run backwards:
+        r(τ) becomes r(Σ − τ). A pair of the other flanks passes the pitch point half a period away from one of these,
+        since tooth and space are of one width there, so that Σ = 2τ_P + ½.
+
+        Parameters
+        ----------
+        pitch_passage : float
+            τ_P at which a pair passes the pitch point [mesh periods].
+        """
+        return self.mirrored().backwards().shifted(-(2.0 * pitch_passage + 0.5))
 
     def shifted(self, phase: float) -> LoadPlace:
         """Return the place ahead in time by a part of the mesh period: t ↦ t + phase T0."""

@@ -289,6 +289,11 @@ class LoadedContact:
         """Fractions of T0, ascending from 0 where a pair begins to be pressed, between which all is smooth."""
         return tuple(self._mesh[2].breakpoints.tolist())
 
+    def age_of_line(self, line: float) -> float:
+        """Mesh periods since a pair began to be pressed at which its line is θs = q − c, for c [rad]."""
+        slices = self.slices
+        return (slices.limits[0] - line) / slices.pitch - self._mesh[0]
+
     def transmission_error(self, fraction: ArrayLike) -> FloatArray:
         """Evaluate the loaded transmission error: approach δ of the teeth along the line of action [m].
 

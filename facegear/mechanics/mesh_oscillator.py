@@ -183,17 +183,19 @@ class MeshOscillator(PinionsOnDisk):
     @cached_property
     def loads(self) -> tuple[ContactLoad, ...]:
         """Loads of all meshes, divided by 2πρh as those of (4-8), pinion by pinion."""
-        # A load whose path says nothing stands for one pair, or as the only one for all of them.
-        pairs = 1.0 if self.contact.sharing == "each" else self.contact_ratio
-        unit = self.axial_stiffness / modal_mass(self.body)
         found = []
         for number, phase in enumerate(self.mesh_phases):
             pinion = _Pinion(number, len(self.faces), self.pinion_angles[number], phase, self.faces[number])
-            for shape, weight in _mesh(self.body.modes, self.contact, self.body.drive, pinion):
-                stiffness = unit * (pairs if weight is None else 1.0)
-                damping = self.mesh_damping * stiffness
-                found.append(ContactLoad(shape, stiffness, damping, rate="total", weight=weight))
+            shapes = _mesh(self.body.modes, self.contact, self.body.drive, pinion)
+            found += [self.mesh_load(shape, weight) for shape, weight in shapes]
         return tuple(found)
+
+    def mesh_load(self, shape: PiecewiseChebyshev, weight: PiecewiseChebyshev | None) -> ContactLoad:
+        """Load of a mesh, divided by 2πρh, from the shape vector of u [1/m, -] and the weight that its path says."""
+        # A load whose path says nothing stands for one pair, or as the only one for all of them.
+        pairs = self.contact_ratio if weight is None and self.contact.sharing != "each" else 1.0
+        stiffness = pairs * self.axial_stiffness / modal_mass(self.body)
+        return ContactLoad(shape, stiffness, self.mesh_damping * stiffness, rate="total", weight=weight)
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed, divided by 2πρh as (4-8).

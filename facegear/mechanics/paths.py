@@ -8,6 +8,7 @@ drive cut by a larger shaper (`point_contact`), where nothing sweeps. Load leads
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -152,6 +153,17 @@ class LoadedPath(TimedPairs):
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions of T0 between which all is smooth, ascending from 0, where a pair begins to be pressed."""
         return self.contact.breakpoints
+
+    @property
+    def pitch_passage(self) -> float:
+        """Mesh periods since a pair began to be pressed at which it passes the pitch point; of aligned gears."""
+        if self.contact.misalignment != ALIGNED:
+            raise ValueError(
+                "misalignment must be none for a pinion that is driven: its other flank would need one of its own, "
+                f"got {self.contact.misalignment!r}"
+            )
+        angle = self.drive.pressure_angle
+        return self.contact.age_of_line(angle - math.tan(angle))
 
     @property
     def fit_tolerances(self) -> FloatArray:

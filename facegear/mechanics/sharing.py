@@ -133,6 +133,11 @@ class SharedPath(TimedPairs):
         """Relative errors that a fit may have, shape (pieces,) [-]."""
         return self.own.fit_tolerances
 
+    @property
+    def pitch_passage(self) -> float:
+        """Mesh periods since entry at which a pair passes the pitch point."""
+        return self.own.pitch_passage
+
     def require_followable(self, name: str, mean: bool) -> None:
         """As that of the path whose load is shared."""
         self.own.require_followable(name, mean)

@@ -60,7 +60,11 @@ ALLOWED = {
     r"\\alpha_\{?(?!c\b|s\b|p\b|i\b|\{?va)": set(),
     r"\\beta(?![_a-zA-Z])": {"02", "04"},  # wave number of a mode; in chapter 2 the dissertation's own letter
     r"\\zeta(?![_a-zA-Z])": {"04", "05", "06"},  # damping over stiffness of the bearing
-    r"\\psi(?!_L)": {"05", "07"},  # phase between pinions; in chapter 7 the dissertation's own letter
+    r"\\psi(?!_L)": {
+        "05",
+        "07",
+        "08",
+    },  # phase between pinions, or faces; in chapter 7 the dissertation's own letter
     r"\\lambda(?![_a-zA-Z])": {"02", "07"},  # a multiplier
     r"\\cos q\b|\bq - n\b|n-q\b|\(1-q\)": set(),  # q is the vector of coordinates
 }

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.integrate import solve_ivp
+from scipy.linalg import block_diag
 
 RadialFunction = Callable[[int, int, np.ndarray], np.ndarray]
 Position = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -256,17 +257,18 @@ def total_rate_multipliers(
 
 @dataclass(frozen=True, eq=False)
 class Spring:
-    """Teeth between the disk and one pinion: where they press, and what part of k_z and c_z they then have."""
+    """Teeth between a disk and one pinion: where they press, and what part of k_z and c_z they then have."""
 
     place: Pinion
     weight: Callable[[np.ndarray], np.ndarray]
     pinion: int = 0
+    disk: int = 0
 
 
 def oscillator_multipliers(
     disk: ComplexDisk,
     springs: Sequence[Spring],
-    speed: float,
+    speed: float | Sequence[float],
     period: float,
     *,
     m_p: float,
@@ -279,9 +281,10 @@ def oscillator_multipliers(
     """Eigenvalues of the transition matrix when pinions m_p w'' + c_b w' + k_b w = F hang on springs of the teeth.
 
     F = s (c_z u' + k_z u) with u = w(r_c(t), θ_c(t), t) - w_m and u' its whole derivative presses on the disk with the
-    opposite sign. State: η, η' and, in metres, w_m and w_m'.
+    opposite sign. State: η, η' and, in metres, w_m and w_m'. With several speeds there are as many disks alike.
     """
-    _, C0, K0 = disk.constant_matrices(speed)
+    turning = [disk.constant_matrices(each) for each in np.atleast_1d(speed)]
+    C0, K0 = (block_diag(*(matrices[k] for matrices in turning)) for k in (1, 2))
     n, count = len(K0), 1 + max(spring.pinion for spring in springs)
     modal_mass = 2 * np.pi * disk.rho * disk.h
     frequency = np.sqrt(np.abs(K0).max())
@@ -301,18 +304,19 @@ def oscillator_multipliers(
                     80,
                     [start, end],
                 )
-                tables.append((spring.pinion, weight, *_shape_series(disk, spring.place, start, end)))
+                own = slice(*(n // len(turning) * np.array([spring.disk, spring.disk + 1])))
+                tables.append((spring.pinion, own, weight, *_shape_series(disk, spring.place, start, end)))
 
         def rates(t: float, flat: np.ndarray, tables=tables) -> np.ndarray:
             Y = flat.reshape(2 * (n + count), -1) / scale[:, None]
             eta, w, eta_t, w_t = np.split(Y, [n, n + count, 2 * n + count])
             disk_force = -C0 @ eta_t - K0 @ eta
             pinion_force = -c_b * w_t - k_b * w
-            for number, weight, phi, slope in tables:
+            for number, own, weight, phi, slope in tables:
                 f, f_dot = phi(t / period), slope(t / period) / period
-                u, u_dot = f @ eta - w[number], f @ eta_t + f_dot @ eta - w_t[number]
+                u, u_dot = f @ eta[own] - w[number], f @ eta_t[own] + f_dot @ eta[own] - w_t[number]
                 force = weight(t / period) * (c_z * u_dot + k_z * u)
-                disk_force -= np.outer(f.conj(), force) / modal_mass
+                disk_force[own] -= np.outer(f.conj(), force) / modal_mass
                 pinion_force[number] += force
             return (np.concatenate([eta_t, w_t, disk_force, pinion_force / m_p]) * scale[:, None]).ravel()
 

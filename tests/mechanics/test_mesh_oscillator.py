@@ -170,12 +170,12 @@ def springs(oscillator, pinion, rule, angle, phase, sense=1.0):
     return found
 
 
-def by_another_route(oscillator, found, speed):
+def by_another_route(oscillator, found, speed, turning=None):
     stiffness = oscillator.mesh_stiffness * math.sin(DRIVE.pressure_angle) ** 2
     return oscillator_multipliers(
         beyond_the_rim(),
         found,
-        speed,
+        speed if turning is None else turning,
         mesh_period(DRIVE, speed),
         m_p=oscillator.pinion_mass,
         c_b=oscillator.bearing_damping,

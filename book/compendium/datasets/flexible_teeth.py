@@ -1,0 +1,98 @@
+"""Arrays of the chapter on flexible teeth, both faces and two gears, with units and tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from facegear.floquet.models import Model
+from facegear.maps.stability_map import stability_map
+from facegear.support.labelled import text, variable
+from facegear.support.parameters import rad_per_s
+
+_growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
+
+
+def growth_maps(
+    models: Mapping[str, Model], speeds_rpm: ArrayLike, parameter: str, values: ArrayLike, jobs: int = -1
+) -> xr.Dataset:
+    """Growth rates of several models over speed and one parameter.
+
+    Parameters
+    ----------
+    models : mapping of str to Model
+    speeds_rpm : array_like
+        Of the face gear [rpm].
+    parameter : str
+        Of all models.
+    values : array_like
+        Its values [its unit].
+    jobs : int
+
+    Returns
+    -------
+    xarray.Dataset
+        ``growth_rate`` [1/s] over (model, value, speed).
+    """
+    shown = np.asarray(speeds_rpm, dtype=float)
+    charts = [
+        stability_map(model, np.asarray(rad_per_s(shown)), parameter, values, jobs=jobs).values
+        for model in models.values()
+    ]
+    return xr.Dataset(
+        {"growth_rate": _growth(("model", "value", "speed"), charts, "Growth rate")},
+        {
+            "model": np.arange(len(models)),
+            "value": np.asarray(values, dtype=float),
+            "speed": shown,
+            "model_name": text("model", list(models), "Model"),
+        },
+        {"parameter": parameter},
+    )
+
+
+def growth_rows(
+    models: Mapping[float, Model], speeds_rpm: ArrayLike, parameter: str, value: float, jobs: int = -1
+) -> xr.Dataset:
+    """Growth rates over speed of models that differ in more than one parameter, each named by a number.
+
+    Parameters
+    ----------
+    models : mapping of float to Model
+    speeds_rpm : array_like
+        Of the face gear [rpm].
+    parameter : str
+        Any parameter of all models.
+    value : float
+        Its value.
+    jobs : int
+
+    Returns
+    -------
+    xarray.Dataset
+        As :func:`growth_maps` of one model, over the numbers.
+    """
+    named = {str(number): model for number, model in models.items()}
+    rows = growth_maps(named, speeds_rpm, parameter, [value], jobs).growth_rate.values[:, 0]
+    return xr.Dataset(
+        {"growth_rate": _growth(("model", "value", "speed"), rows[np.newaxis], "Growth rate")},
+        {
+            "model": [0],
+            "value": np.array(list(models), dtype=float),
+            "speed": np.asarray(speeds_rpm, dtype=float),
+            "model_name": text("model", ["all"], "Model"),
+        },
+    )
+
+
+def shares(data: xr.Dataset) -> dict[str, tuple[float, float]]:
+    """Unstable share of the cells [%] and largest growth rate [1/s] of each model of :func:`growth_maps`."""
+    growth = data.growth_rate.values.reshape(data.sizes["model"], -1)
+    return {
+        name: (100.0 * float((row > 0.0).mean()), float(row.max()))
+        for name, row in zip(data.model_name.values.tolist(), growth, strict=True)
+    }

@@ -1,0 +1,65 @@
+"""Figures of the chapter on flexible teeth, both faces and two gears."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from facegear.plotting.style import (
+    BLUE,
+    GREEN,
+    INK,
+    ORANGE,
+    VERMILION,
+    draw_unstable,
+    panels,
+    styled,
+)
+
+_SPEED = "speed of the face gear [rpm]"
+
+
+@styled
+def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int = 3) -> Figure:
+    """Draw maps of several models on one scale of colours; `label` and `scale` are those of the parameter."""
+    names = data.model_name.values.tolist()
+    rows = -(-len(names) // columns)
+    figure, axes = panels(rows, min(columns, len(names)), 2.8 * rows + 0.8, sharex=True, sharey=True)
+    largest = max(1e-9, float(data.growth_rate.max()))
+    speed, value = data.speed.values, data.value.values * scale
+    for place, (ax, name) in enumerate(zip(axes, names, strict=False)):
+        growth = data.growth_rate.isel(model=place).values
+        mesh = draw_unstable(ax, speed, value, growth, largest)
+        ax.set_title(name, loc="left", fontsize=10)
+        ax.grid(False)
+        if place % columns == 0:
+            ax.set_ylabel(label)
+    figure.supxlabel(_SPEED, fontsize="medium")
+    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", shrink=0.8)
+    return figure
+
+
+@styled
+def bars(shares: Mapping[str, Mapping[str, float]], label: str) -> Figure:
+    """Draw bars of several groups: name of a bar to its lengths by group."""
+    groups = list(next(iter(shares.values())))
+    figure, (ax,) = panels(height=0.5 * len(shares) + 1.6)
+    height = 0.8 / len(groups)
+    for place, (group, colour) in enumerate(zip(groups, (VERMILION, BLUE, GREEN, ORANGE), strict=False)):
+        rows = np.arange(len(shares)) + (place - (len(groups) - 1) / 2) * height
+        lengths = [lengths[group] for lengths in shares.values()]
+        ax.barh(rows, lengths, height, color=colour, label=group)
+        for row, length in zip(rows, lengths, strict=True):
+            ax.annotate(
+                f"{length:.1f}", (length, row), (3, 0), textcoords="offset points", va="center", color=INK
+            )
+    ax.set_yticks(np.arange(len(shares)), list(shares))
+    ax.invert_yaxis()
+    ax.set_xlabel(label)
+    ax.grid(False)
+    ax.margins(x=0.1)
+    figure.legend(loc="outside lower center", ncols=len(groups))
+    return figure

@@ -1,0 +1,213 @@
+"""Two face gears face to face that share pinions, as in split-torque gearboxes (section 8.2, Fig. 1.10).
+
+Both gears mesh with every pinion, from below and from above. Turned by half a turn about the axis of a pinion, the mesh
+below is the mesh above: the upper gear turns the other way, its contact runs along the mirrored path at the same
+instants, and half a turn is N1/2 teeth of the pinion. A pinion stands between the gears only where its teeth fit into
+both: from one pinion to another the lower gear turns its mesh by θ/θ_N periods and the upper one by −θ/θ_N, so that
+angles differ by whole halves of the angular pitch θ_N.
+
+A pinion that drives both gears is an *input*. An *idler* takes torque from the upper gear and gives it to the lower: on
+the upper gear it presses with the other flanks of its teeth, whose contact is mirrored and runs backwards
+(:meth:`facegear.mechanics.contact.LoadPlace.coasting`). An *output* does so on both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Literal, NamedTuple
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from facegear.floquet.models import Coordinate
+from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import mesh_period
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.disk import disk_coordinates, disk_matrices, modal_mass, unit_shape
+from facegear.mechanics.mesh_oscillator import MeshOscillator
+from facegear.mechanics.plate import RadialModes
+from facegear.support.parameters import keep, one_of, positive
+from facegear.support.types import FloatArray
+
+Role = Literal["input", "idler", "output"]
+
+DRIVES: dict[str, tuple[bool, bool]] = {
+    "input": (True, True),
+    "idler": (True, False),
+    "output": (False, False),
+}
+"""Whether a pinion drives the lower and the upper gear, or is driven by it, by its role."""
+
+# Parts of half an angular pitch by which a pinion may miss its place.
+_FITS = 1e-6
+
+
+@dataclass(frozen=True)
+class TwoGears:
+    """Transverse vibration of two equal face gears that share their pinions, each pinion on the springs of its teeth.
+
+    The driving forces in the planes of the gears are left out.
+
+    Parameters
+    ----------
+    gear : MeshOscillator
+        The lower gear with its pinions, all on its front, without phases of their own and without driving force; the
+        upper gear is another like it.
+    roles : sequence of {"input", "idler", "output"}, optional
+        What each pinion does. Default: all are inputs.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range, or a pinion does not fit between the gears.
+
+    Examples
+    --------
+    >>> from facegear.mechanics.plate import Body
+    >>> from facegear.mechanics.torsional import mesh_stiffness
+    >>> from facegear.support.parameters import MeshLoad
+    >>> body, load = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0)
+    >>> angles = tuple(body.drive.angular_pitch * teeth for teeth in (0, 65))
+    >>> teeth = mesh_stiffness(body.drive, correction_factor=0.5)
+    >>> gear = MeshOscillator(body, load, angles, mesh_stiffness=teeth, mesh_damping=1e-5)
+    >>> TwoGears(gear, roles=("input", "idler")).system(speed=50.0).size
+    30
+    """
+
+    gear: MeshOscillator
+    roles: Sequence[Role] | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.gear, MeshOscillator):
+            raise TypeError(f"gear must be a MeshOscillator, got {self.gear!r}")
+        for name in ("sides", "phases", "force"):
+            if (value := getattr(self.gear, name)) is not None:
+                raise ValueError(f"gear.{name} must be None between two gears, got {value!r}")
+        if self.gear.clocking != 0.0:
+            raise ValueError(f"gear.clocking must be 0 between two gears, got {self.gear.clocking!r}")
+        if self.roles is not None:
+            if isinstance(self.roles, str) or len(self.roles) != len(self.gear.pinion_angles):
+                raise ValueError(
+                    f"roles must list one a pinion, {len(self.gear.pinion_angles)}, got {self.roles!r}"
+                )
+            for role in self.roles:
+                one_of("roles", role, tuple(DRIVES))
+            keep(self, roles=tuple(self.roles))
+        self._require_fit()
+
+    def _require_fit(self) -> None:
+        """Refuse pinions whose teeth do not fit into both gears."""
+        first, half = self.gear.pinion_angles[0], 0.5 * self.gear.body.drive.angular_pitch
+        for angle in self.gear.pinion_angles[1:]:
+            steps = (angle - first) / half
+            if abs(steps - round(steps)) > _FITS:
+                near = first + round(steps) * half
+                raise ValueError(
+                    "gear.pinion_angles must differ by whole halves of the angular pitch, or teeth do not fit into "
+                    f"both gears, got {angle!r} rad; the nearest that fits is {near!r} rad"
+                )
+
+    @property
+    def duties(self) -> tuple[str, ...]:
+        """What each pinion does: `roles` if given, else all are inputs."""
+        return ("input",) * len(self.gear.pinion_angles) if self.roles is None else tuple(self.roles)
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Modes of the lower and the upper disk, and w_m of each pinion, all along the axis of the lower one."""
+        body, pinions = self.gear.body, self.gear.coordinates[-len(self.gear.pinion_angles) :]
+        lower, upper = (disk_coordinates(body, part) for part in ("lower face gear", "upper face gear"))
+        named = (
+            replace(coordinate, name=f"{coordinate.part}, {coordinate.name}")
+            for coordinate in (*lower, *upper)
+        )
+        return (*named, *pinions)
+
+    @property
+    def contact_ratio(self) -> float:
+        """Mesh periods that a tooth pair stays in mesh."""
+        return self.gear.contact_ratio
+
+    @cached_property
+    def loads(self) -> tuple[ContactLoad, ...]:
+        """Loads of all meshes, divided by 2πρh as those of (4-8): of each pinion below, then above."""
+        gear, duties = self.gear, self.duties
+        found = []
+        for number, (angle, phase) in enumerate(zip(gear.pinion_angles, gear.mesh_phases, strict=True)):
+            for upper, driving in enumerate(DRIVES[duties[number]]):
+                mesh = _Mesh(number, len(duties), bool(upper), driving, angle, phase)
+                shapes = _shapes(gear.body.modes, gear.contact, gear.body.drive, mesh)
+                found += [gear.mesh_load(shape, weight) for shape, weight in shapes]
+        return tuple(found)
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed, divided by 2πρh as (4-8).
+
+        Parameters
+        ----------
+        speed : float
+            Ω2 of the lower gear [rad/s], greater than 0; the upper one turns as fast the other way.
+
+        Returns
+        -------
+        PeriodicSystem
+            2(M + 1)(2N + 1) coordinates of the disks and one for each pinion, the period T0 (3-20).
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `speed` is not a finite number greater than 0.
+        """
+        speed = positive("speed", speed, "rad/s")
+        gear, count = self.gear, len(self.gear.pinion_angles)
+        own = np.array([gear.pinion_mass, gear.bearing_damping, gear.bearing_stiffness]) / modal_mass(
+            gear.body
+        )
+        lower, upper = (disk_matrices(gear.body, turning) for turning in (speed, -speed))
+        damping, stiffness = (
+            block_diag(below, above, value * np.eye(count))
+            for below, above, value in zip(lower, upper, own[1:], strict=True)
+        )
+        mass = np.diag(np.append(np.ones(len(damping) - count), np.full(count, own[0])))
+        return PeriodicSystem(mass, damping, stiffness, self.loads, mesh_period(gear.body.drive, speed))
+
+
+class _Mesh(NamedTuple):
+    """Which pinion of how many, on which gear, driving or driven, and where: θ_c [rad], ψ [mesh periods]."""
+
+    number: int
+    pinions: int
+    upper: bool
+    driving: bool
+    angle: float
+    phase: float
+
+
+@lru_cache(maxsize=256)
+def _shapes(
+    modes: tuple[RadialModes, ...], contact: Contact, drive: Drive, mesh: _Mesh
+) -> tuple[tuple[PiecewiseChebyshev, PiecewiseChebyshev | None], ...]:
+    """Shape vector of u of each load of a mesh, and its weight, against t/T0."""
+    # Along the one axis, what presses the upper gear upwards presses the lower one downwards.
+    sign = -1.0 if mesh.upper else 1.0
+
+    def vector(x: FloatArray, angle: FloatArray) -> FloatArray:
+        disk = unit_shape(modes, x, angle) / drive.outer_radius
+        parts = [disk, np.zeros_like(disk)]
+        pinions = np.zeros((*x.shape, mesh.pinions))
+        pinions[..., mesh.number] = -1.0
+        return sign * np.concatenate([*(parts[::-1] if mesh.upper else parts), pinions], axis=-1)
+
+    places = contact.places(drive) if mesh.driving else contact.coasting_places(drive)
+    phase = mesh.phase
+    if mesh.upper:
+        places = tuple(place.mirrored() for place in places)
+        phase += 0.5 * (drive.pinion_teeth % 2)
+    places = tuple(place.rotated(mesh.angle).shifted(phase) for place in places)
+    if contact.travel == "with_disk":
+        places = tuple(place.mirrored() for place in places)
+    return tuple((place.shape(vector), place.weight) for place in places)
