@@ -32,11 +32,13 @@ LOADS = {"I": (1.0, 3e-6, 1.0), "II": (1.0, 1e-6, 1.0), "B": (0.25, 1e-5, 1.0)}
 RATED = 600.0 * 745.6998715822702 / (5000.0 * math.pi / 30.0)
 
 
-def anchor(value, error, **at):
+def anchor(found, at):
+    """Growth rate and its error [1/s] at a place."""
+    growth, error = found
     return {
         "variable": "growth_rate",
         "at": {key: float(number) for key, number in at.items()},
-        "value": float(value),
+        "value": float(growth),
         "atol": float(error),
     }
 
@@ -190,10 +192,10 @@ def maps(stored):
     ):
         at = strongest(stored, label)
         spring = Spring(centroid(path), whole(path))
-        yield anchor(*sprung(body, with_stiffness(LOADS["I"], at["value"]), [spring], at["speed"]), **at)
+        yield anchor(sprung(body, with_stiffness(LOADS["I"], at["value"]), [spring], at["speed"]), at)
     at = strongest(stored, "as printed: frozen")
     load = with_stiffness(LOADS["I"], at["value"])
-    yield anchor(*held(CASE_1, load, [centroid(fg.ContactPath(CASE_1.drive))], at["speed"]), **at)
+    yield anchor(held(CASE_1, load, [centroid(fg.ContactPath(CASE_1.drive))], at["speed"]), at)
 
 
 def bases(stored):
@@ -203,7 +205,7 @@ def bases(stored):
         found = [one_spring(path, (0.0, 0.0))]
         if label.startswith("equal"):
             found = springs_of_pairs(path, "equal", (0.0, 0.0))
-        yield anchor(*sprung(body, LOADS["I"], found, at["speed"]), **at)
+        yield anchor(sprung(body, LOADS["I"], found, at["speed"]), at)
 
 
 def sharing(stored):
@@ -215,7 +217,7 @@ def sharing(stored):
     ):
         at = strongest(stored, f"{rule}; {clock}")
         found = springs_of_pairs(fg.ContactPath(CASE_1.drive, ratio), rule, (0.0, 0.0))
-        yield anchor(*sprung(CASE_1, with_stiffness(LOADS["I"], at["value"]), found, at["speed"]), **at)
+        yield anchor(sprung(CASE_1, with_stiffness(LOADS["I"], at["value"]), found, at["speed"]), at)
 
 
 def clocking(stored):
@@ -223,7 +225,7 @@ def clocking(stored):
         at = cell(stored, "flexible teeth", row, column)
         path = fg.ContactPath(CASE_1.drive)
         found = [one_spring(path, (0.0, phase), number=k) for k, phase in enumerate((0.0, at["value"]))]
-        yield anchor(*sprung(CASE_1, LOADS["I"], found, at["speed"]), **at)
+        yield anchor(sprung(CASE_1, LOADS["I"], found, at["speed"]), at)
 
 
 def clocking_rigid(stored):
@@ -231,7 +233,7 @@ def clocking_rigid(stored):
         at = cell(stored, "all", row, column)
         path = fg.ContactPath(CASE_1.drive)
         places = [centroid(path, phase=phase) for phase in (0.0, at["value"])]
-        yield anchor(*held(CASE_1, LOADS["I"], places, at["speed"]), **at)
+        yield anchor(held(CASE_1, LOADS["I"], places, at["speed"]), at)
 
 
 def gears(stored, number):
@@ -246,21 +248,21 @@ def gears(stored, number):
             sense = (1.0 if driving else -1.0) * (1.0, -1.0)[gear]
             phase = 0.5 * gear * (number % 2)
             found.append(one_spring(path, (place * step, phase), bool(driving), sense, k, gear))
-    yield anchor(*sprung(body, LOADS["I"], found, at["speed"], (1.0, -1.0)), **at)
+    yield anchor(sprung(body, LOADS["I"], found, at["speed"], (1.0, -1.0)), at)
 
 
 def verdict(stored, body, load, angles):
     path = fg.ContactPath(body.drive)
     places = [(angle, (angle / body.drive.angular_pitch) % 1.0) for angle in angles]
     at = strongest(stored, "as printed")
-    yield anchor(*held(body, load, [centroid(path, *place) for place in places], at["speed"]), **at)
+    yield anchor(held(body, load, [centroid(path, *place) for place in places], at["speed"]), at)
     at = strongest(stored, "flexible, equal pairs")
     found = [
         spring
         for k, place in enumerate(places)
         for spring in springs_of_pairs(path, "equal", place, number=k)
     ]
-    yield anchor(*sprung(body, load, found, at["speed"]), **at)
+    yield anchor(sprung(body, load, found, at["speed"]), at)
 
 
 def main() -> None:
