@@ -187,11 +187,13 @@ class Slices:
             return np.asarray(region.depth(q, self.roll(q, line)) - shaper.tooth_top_distance)
 
         def outside(q: FloatArray, line: FloatArray, radius: FloatArray) -> FloatArray:
-            return np.asarray(region.radial_position(q, self.roll(q, line)) - radius)
+            # Before the involute begins as at its beginning, where the radius rises with q.
+            return np.asarray(region.radial_position(q, np.maximum(self.roll(q, line), 0.0)) - radius)
 
         top = crossing(above, first, most, lines)
         inner = crossing(outside, first, most, lines, shaper.flank_start)
-        outer = crossing(outside, first, most, lines, shaper.outer_radius)
+        # From where lines cannot be, so that those of which nothing is left are told from those that end.
+        outer = crossing(outside, least, most, lines, shaper.outer_radius)
         lower = [base, own_base, top, inner]
         if self.drive.shaft_angle > 0.5 * math.pi:
             ends = np.maximum.reduce(lower), np.minimum.reduce([tip, own_tip, outer])
@@ -199,7 +201,7 @@ class Slices:
             def clear(q: FloatArray, line: FloatArray) -> FloatArray:
                 return region.shaper.clearance(q, self.roll(q, line))
 
-            # A little beyond, so that lines of which nothing is left are told from those that end.
+            # A little beyond, for the same reason.
             lower.append(crossing(clear, ends[0], np.minimum(np.maximum(*ends) + _MARGIN, most), lines))
         return np.stack(lower), np.stack([tip, own_tip, outer])
 
@@ -228,17 +230,24 @@ class Slices:
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """Ages of lines at which another edge ends them [mesh periods], ascending."""
-        ages = np.linspace(0.0, self.sweep, _LINES + 1)[1:-1]
+        # The first and the last line have no length, and so no edge: lines nearer and nearer to them.
+        near = _GRADING ** -np.arange(1.0, round(math.log(1.0 / _SHORTEST, _GRADING))) / _LINES
+        inside = np.arange(1.0, _LINES) / _LINES
+        ages = self.sweep * np.concatenate([near[::-1], inside, 1.0 - near])
         found = []
         for side in (0, 1):
             labels = self._edges(ages, side)
             for k in np.flatnonzero(np.diff(labels)):
-                low, high, label = float(ages[k]), float(ages[k + 1]), labels[k]
-                while high - low > _SAME:
-                    between = np.linspace(low, high, _SECTIONS)
-                    first = int(np.argmax(self._edges(between, side) != label))
-                    low, high = float(between[first - 1]), float(between[first])
-                found.append(high)
+                low, label = float(ages[k]), labels[k]
+                # There may be several edges in turn.
+                while label != labels[k + 1]:
+                    high = float(ages[k + 1])
+                    while high - low > _SAME:
+                        between = np.linspace(low, high, _SECTIONS)
+                        first = int(np.argmax(self._edges(between, side) != label))
+                        low, high = float(between[first - 1]), float(between[first])
+                    found.append(high)
+                    low, label = high, self._edges(np.array([high]), side)[0]
         return tuple(sorted(found))
 
     def _edges(self, ages: FloatArray, side: int) -> NDArray[np.int64]:

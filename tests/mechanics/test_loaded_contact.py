@@ -52,8 +52,13 @@ def test_areas_under_the_gap_by_quadrature():
         pytest.param(replace(CUT, shaft_angle=math.radians(105.0)), 3, marks=pytest.mark.slow),
         pytest.param(Drive(20, 100, MODULE, shaper_teeth=21), 2, marks=pytest.mark.slow),
         (Drive(52, 260, 3e-3, shaper_teeth=55), 1),
+        (Drive(17, 85, 3e-3, shaper_teeth=18), 3),
+        (Drive(26, 130, MODULE, shaper_teeth=115), 3),
+        pytest.param(
+            Drive(20, 100, MODULE, shaper_teeth=21, shaft_angle=math.radians(91.0)), 3, marks=pytest.mark.slow
+        ),
     ],
-    ids=["Case I", "cut again at 105°", "few teeth", "many teeth"],
+    ids=["Case I", "cut again at 105°", "few", "many teeth", "fewer", "large shaper", "cut again at the end"],
 )
 def test_lines_lie_on_both_flanks_and_end_at_an_edge(drive, kinks):
     slices = Slices(drive)
