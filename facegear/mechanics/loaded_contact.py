@@ -34,6 +34,8 @@ from facegear.support.types import FloatArray
 
 # Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.
 _INSTANTS, _FINER = 64, 4
+# The first and the last line have no length but by rounding: so near to them others are looked at [mesh periods].
+_NEXT = 1e-10
 # Relative error of series over a mesh period.
 _TOLERANCE = 1e-12
 # How short a piece must be, in mesh periods, before it may have more.
@@ -207,6 +209,7 @@ class LoadedContact:
         grid = np.append(np.arange(count + 1) / instants, self.slices.sweep)
         approach = self._approach(np.append(phases, self.slices.sweep))
         reach = np.sqrt(np.append(np.resize(approach[:-1], count + 1), approach[-1]))
+        grid = np.clip(grid, _NEXT, self.slices.sweep - _NEXT)
         lines = self._lines(grid)
         return np.sort(
             np.concatenate([self._passages(grid, lines, reach), self._turns(grid, lines, reach**2)])
