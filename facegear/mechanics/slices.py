@@ -84,10 +84,7 @@ class Slices:
     @cached_property
     def _range(self) -> tuple[float, float]:
         """Local pressure angles of the face, and a little more [rad]."""
-        shaper = self.drive.generating
-        rolls = (0.0, shaper.shaper_tip_roll)
-        first = min(self._region.edge_angle(shaper.flank_start, roll) for roll in rolls)
-        last = max(self._region.edge_angle(shaper.outer_radius, roll) for roll in rolls)
+        first, last = self.contact.face_angles
         return max(first - _MARGIN, _FLATTEST), min(last + _MARGIN, _STEEPEST)
 
     # --- gap -------------------------------------------------------------------------------------------------
@@ -118,7 +115,7 @@ class Slices:
         return np.asarray(away * np.sqrt(bend @ (0.5 * _WEIGHTS * (1.0 - t))), dtype=float)
 
     def at(self, position: FloatArray) -> FloatArray:
-        """Slices s at coordinates u along the shaper's axis [√m], which must have a point of the flank."""
+        """Slices s at coordinates u along the shaper's axis [√m], between the ends of :attr:`UnloadedContact.face`."""
         gap = self.contact.gap(position)
         return np.asarray(np.sign(position - self.contact.position) * np.sqrt(np.maximum(gap, 0.0)))
 
@@ -134,7 +131,7 @@ class Slices:
 
     @cached_property
     def position(self) -> Chebyshev:
-        """Coordinate u along the shaper's axis of the slice s [m]."""
+        """Coordinate u along the shaper's axis of the slice s [m], see :attr:`UnloadedContact.face`."""
         low, high = self.pressure_angle.domain.tolist()
         return _polynomial(_resolved(lambda s: self._region.position(self.pressure_angle(s)), low, high))
 

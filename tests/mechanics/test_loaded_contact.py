@@ -112,6 +112,14 @@ def test_a_line_of_which_nothing_is_left_carries_nothing(law):
         assert np.count_nonzero(force) == 0
 
 
+@pytest.mark.parametrize("angle", [60.0, 75.0, 100.0, 120.0])
+def test_pressure_over_the_face_is_the_force(angle):
+    contact = LoadedContact(replace(CUT, shaper_teeth=28, shaft_angle=math.radians(angle)), 100.0)
+    u = np.linspace(*contact.slices.contact.face, 4001)
+    carried = np.trapezoid(contact.pressure(0.3, u), u, axis=-1)
+    np.testing.assert_allclose(carried, contact.pairs(0.3).force, atol=2e-4 * contact.force)
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_stiffness_is_the_slope_of_force_against_approach(law):
     """At one instant: a little more torque, a little more approach."""
