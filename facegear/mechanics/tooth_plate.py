@@ -1,4 +1,4 @@
-"""Teeth as cantilever plates: a compliance between slices of their own and rigid teeth.
+"""Teeth as cantilever plates: a compliance between slices, each for itself, and rigid teeth of the same mean stiffness.
 
 A tooth under a load somewhere along its face gives way there most, and beside it less, as its face holds together.
 Here it is a plate clamped at its root, of the true thickness of the tooth against height and along the face, that

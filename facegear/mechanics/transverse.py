@@ -154,17 +154,7 @@ class Transverse:
             raise TypeError(f"force must be a DrivingForce or None, got {self.force!r}")
         if self.force is not None:
             self.force.require(self.body)
-        if self.contact.sharing == "each":
-            raise ValueError(
-                f'sharing must be "centroid" or "mean" for one load a pinion, got {self.contact.sharing!r}'
-            )
-        self.contact.require(self.body.drive)
-        if self.contact.rate == "total" and self.contact.sharing == "mean" and self.load.mass > 0.0:
-            raise ValueError(
-                'sharing must be "centroid" where a pinion with a mass follows its contact (rate = "total"): the mean '
-                f"jumps as pairs enter and leave, and no mass can; got {self.contact.sharing!r} with "
-                f"load.mass={self.load.mass!r}"
-            )
+        self.contact.require_one_load(self.body.drive, self.load.mass)
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
         if angles.ndim != 1 or angles.size == 0:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
