@@ -40,8 +40,9 @@ class Contact:
         :mod:`facegear.mechanics.paths`, on their own clocks; or another
         :class:`facegear.geometry.kinematics.TimedPairs`.
     sharing : {"centroid", "mean", "each"}
-        One load at the mean contact point, weighted by the lengths of the contact lines (3-21) or with equal weights;
-        or one load for each tooth pair, numbered by age, there while the pair is in mesh.
+        One load at the mean contact point, weighted by the lengths of the contact lines (3-21) or with equal weights,
+        the only mean of a contact at a point, which has no lines; or one load for each tooth pair, numbered by age,
+        there while the pair is in mesh.
     contact_ratio : float, optional
         Mesh periods that a tooth pair stays in mesh, 1 or more, and 1.001 or more where total rate follows a mean
         point. Default None: that of the path, whatever the drive, which is Tregold's, as printed, for those of the

@@ -157,10 +157,12 @@ class LoadedContact:
         one_of("compliance", self.compliance, tuple(COMPLIANCES))
         keep(self, torque=checked_torque(self.torque))
         keep(self, correction_factor=checked_factor(self.correction_factor))
-        size = self.force / self.pair_stiffness / self.drive.module
-        if not _LEAST <= size <= _MOST:
-            least, most = (self.torque * (end / size) for end in (_LEAST, _MOST))
-            why = "teeth would give way by more than a module" if size > _MOST else "less is lost in rounding"
+        # Under which a pair pressed over the whole face gives way by a module.
+        whole = self.drive.module * self.pair_stiffness * self.drive.base_radius
+        least, most = _LEAST * whole, _MOST * whole
+        if not least <= self.torque <= most:
+            more = "teeth would give way by more than a module"
+            why = more if self.torque > most else "less is lost in rounding"
             raise ValueError(
                 f"torque must lie in [{least:.3g}, {most:.3g}] N m for this drive, material and correction_factor: "
                 f"{why}; got {self.torque!r} N m"
