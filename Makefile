@@ -34,7 +34,7 @@ drive: environment ## report on a drive of your own: make drive FILE=my_drive.ya
 	@$(PYTHON) tools/run_drive.py '$(FILE)'
 
 # Tests are shared out by file: what those of one file share, such as a derivation, is computed once.
-test: environment ## run the tests (a minute or so)
+test: environment ## run the tests (some minutes)
 	@$(PYTEST) -n 2 --dist loadfile -m 'not slow and not book'
 
 test-slow: environment ## run the tests that take a minute each

@@ -13,7 +13,7 @@ from facegear.design.teeth import root_stress
 from facegear.geometry.drive import Drive
 from facegear.maps.lobes import CriticalThickness, highest_lobes
 from facegear.maps.parallel import in_processes
-from facegear.mechanics.contact import Contact
+from facegear.mechanics.contact import CENTROID, Contact
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE, Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, ascending, keep, positive, within
@@ -25,6 +25,7 @@ def critical_thickness(
     speeds: tuple[float, float],
     *,
     thickness_range: tuple[float, float] = (0.025, 0.06),
+    contact: Contact = CENTROID,
     contact_ratio: float | None = None,
     nodal_circles: int = 1,
     nodal_diameters: int = 3,
@@ -41,8 +42,11 @@ def critical_thickness(
         proportion to the lowest.
     thickness_range : tuple of float
         h/a between which the highest tip is looked for.
+    contact : Contact
+        How the teeth touch. Default as printed; a drive of a shaper with more teeth needs one of its own, such as
+        ``fg.Contact(path=fg.loaded_contact(torque))``.
     contact_ratio : float, optional
-        Mesh periods that a tooth pair stays in mesh; Tregold's if left out.
+        Mesh periods that a tooth pair stays in mesh, in place of those of the contact.
     nodal_circles, nodal_diameters : int
         M and N of the body.
 
@@ -63,7 +67,9 @@ def critical_thickness(
         nodal_circles=nodal_circles,
         nodal_diameters=nodal_diameters,
     )
-    model = Transverse(body, load, contact=Contact(contact_ratio=contact_ratio))
+    if contact_ratio is not None:
+        contact = replace(contact, contact_ratio=contact_ratio)
+    model = Transverse(body, load, contact=contact)
     (found,) = highest_lobes(_thickness_of(model), lowest, [highest], thickness_range)
     return found
 
@@ -145,6 +151,8 @@ def design_body(
     load: MeshLoad,
     requirements: Requirements,
     thickness_range: tuple[float, float] = (0.025, 0.06),
+    *,
+    contact: Contact = CENTROID,
 ) -> BodyDesign:
     """Design a face-gear body for a drive: stress at the root, then thickness from stability (Fig. 4.6).
 
@@ -154,7 +162,7 @@ def design_body(
     load : MeshLoad
         μ, ζ, τ.
     requirements : Requirements
-    thickness_range : tuple of float
+    thickness_range, contact
         As for :func:`critical_thickness`.
 
     Returns
@@ -162,7 +170,8 @@ def design_body(
     BodyDesign
         Also where the stress is too high: a family of designs shows both.
     """
-    critical = critical_thickness(drive, load, requirements.speeds, thickness_range=thickness_range)
+    speeds = requirements.speeds
+    critical = critical_thickness(drive, load, speeds, thickness_range=thickness_range, contact=contact)
     return _design(drive, critical, requirements)
 
 
@@ -178,6 +187,8 @@ def design_family(
     highest_speeds: Sequence[float],
     thickness_range: tuple[float, float] = (0.025, 0.06),
     jobs: int = -1,
+    *,
+    contact: Contact = CENTROID,
 ) -> tuple[tuple[BodyDesign, ...], ...]:
     """Design bodies for many drives and several operating speed ranges, in parallel processes.
 
@@ -189,7 +200,7 @@ def design_family(
         Its speed range gives the lowest speed.
     highest_speeds : sequence of float
         Upper ends of the operating speed ranges [rad/s].
-    thickness_range : tuple of float
+    thickness_range, contact
         As for :func:`critical_thickness`.
     jobs : int
         Number of processes, as joblib's ``n_jobs``.
@@ -199,7 +210,7 @@ def design_family(
     tuple of tuple of BodyDesign
         One row a drive, one entry a highest speed in the given order.
     """
-    work = ((drive, load, requirements, tuple(highest_speeds), thickness_range) for drive in drives)
+    work = ((drive, load, requirements, tuple(highest_speeds), thickness_range, contact) for drive in drives)
     return tuple(in_processes(_designs, work, jobs))
 
 
@@ -209,8 +220,9 @@ def _designs(
     requirements: Requirements,
     highest_speeds: tuple[float, ...],
     thickness_range: tuple[float, float],
+    contact: Contact,
 ) -> tuple[BodyDesign, ...]:
     """Designs of one drive."""
-    model = Transverse(Body(drive, thickness_range[1]), load)
+    model = Transverse(Body(drive, thickness_range[1]), load, contact=contact)
     found = highest_lobes(_thickness_of(model), requirements.speeds[0], highest_speeds, thickness_range)
     return tuple(_design(drive, critical, requirements) for critical in found)

@@ -282,7 +282,7 @@ def replace_parameter(model: ModelT, name: str, value: float) -> ModelT:
     name : str
         As for :func:`parameter_path`.
     value : float
-        New value, in the unit of the field. A field declared as ``int`` takes whole numbers only.
+        New value, in the unit of the field. A field declared as ``int``, or as that or None, takes whole numbers only.
 
     Raises
     ------
@@ -310,12 +310,12 @@ def value_of(model: object, name: str) -> float:
 
 
 def is_whole_number(model: object, name: str) -> bool:
-    """Whether a parameter counts something, as teeth: its field is declared as ``int``."""
+    """Whether a parameter counts something, as teeth: its field is declared as ``int``, or as that or None."""
     *outer, last = parameter_path(model, name)
     part: Any = model
     for field in outer:
         part = getattr(part, field)
-    return bool(_declared(part).get(last) is int)
+    return _counts(part, last)
 
 
 def replace_at(part: Any, path: tuple[str, ...], value: Any) -> Any:
@@ -333,7 +333,7 @@ def replace_at(part: Any, path: tuple[str, ...], value: Any) -> Any:
     if rest:
         return dataclasses.replace(part, **{name: replace_at(getattr(part, name), rest, value)})
     # Text and booleans are left to the part's own check, which names them.
-    if _declared(part).get(name) is int and _is_number(value) and float(value).is_integer():
+    if _counts(part, name) and _is_number(value) and float(value).is_integer():
         return dataclasses.replace(part, **{name: int(value)})
     return dataclasses.replace(part, **{name: value})
 
@@ -350,6 +350,12 @@ def _is_number(value: Any) -> bool:
 def _takes_number(part: Any, name: str) -> bool:
     """Whether an optional field that is None now is declared to take a number."""
     return getattr(part, name) is None and float in get_args(_declared(part).get(name))
+
+
+def _counts(part: object, name: str) -> bool:
+    """Whether a field is declared to take whole numbers only."""
+    declared = _declared(part).get(name)
+    return declared is int or (int in get_args(declared) and float not in get_args(declared))
 
 
 def _declared(part: object) -> dict[str, Any]:

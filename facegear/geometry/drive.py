@@ -7,7 +7,7 @@ module 1/P_d: addendum of pinion and face gear 1.0, addendum of the shaper 1.25,
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property, wraps
 from typing import Concatenate, ParamSpec, TypeVar
 
@@ -117,17 +117,20 @@ class Drive:
                 "shaper_teeth", self.shaper_teeth, self.pinion_teeth, self.gear_teeth - 1
             )
             parameters.keep(self, shaper_teeth=teeth)
-        if self.generating is not self:
-            return
+        generating = self.generating
+        generating._require_flank("pinion_teeth" if generating is self else "shaper_teeth")
+
+    def _require_flank(self, name: str) -> None:
+        """Refuse what leaves no flank, as the pinion that is the shaper; its teeth are called by a name."""
         if self._half_tooth_at_shaper_tip() <= 0.0:
             raise ValueError(
-                f"pinion_teeth={self.pinion_teeth} is too few: at a pressure angle of "
+                f"{name}={self.pinion_teeth} is too few: at a pressure angle of "
                 f"{math.degrees(self.pressure_angle):.4g}° the shaper's tooth is pointed below its addendum "
                 f"circle of {SHAPER_ADDENDUM} modules; take more teeth or a smaller pressure angle"
             )
         if self.inner_limit >= self.outer_limit:
             raise ValueError(
-                f"pinion_teeth={self.pinion_teeth}, gear_teeth={self.gear_teeth} leave no face width: "
+                f"{name}={self.pinion_teeth}, gear_teeth={self.gear_teeth} leave no face width: "
                 f"undercutting reaches out to {self.inner_limit:.6g} m, pointing in to "
                 f"{self.outer_limit:.6g} m along the shaper's axis; take other tooth numbers, "
                 f"or a pressure angle nearer to 25°"
@@ -135,7 +138,7 @@ class Drive:
 
         if self.shaft_angle > _RIGHT_ANGLE and not self.contact_region.has_contact_lines:
             raise ValueError(
-                f"shaft_angle={math.degrees(self.shaft_angle):.4g}° leaves no flank of pinion_teeth="
+                f"shaft_angle={math.degrees(self.shaft_angle):.4g}° leaves no flank of {name}="
                 f"{self.pinion_teeth}, gear_teeth={self.gear_teeth}: the shaper cuts off all that it has generated; "
                 f"take a shaft angle nearer to 90° (any at or below is valid) or more gear_teeth"
             )
@@ -147,7 +150,10 @@ class Drive:
         """The shaper, as a pinion, with the face gear that it makes: this drive itself if it has as many teeth."""
         if self.shaper_teeth is None or self.shaper_teeth == self.pinion_teeth:
             return self
-        return replace(self, pinion_teeth=self.shaper_teeth, shaper_teeth=None)
+        made = object.__new__(Drive)
+        parts = {part.name: getattr(self, part.name) for part in fields(self)}
+        parameters.keep(made, **(parts | {"pinion_teeth": self.shaper_teeth, "shaper_teeth": None}))
+        return made
 
     @property
     def axis_offset(self) -> float:
@@ -171,9 +177,9 @@ class Drive:
             raise ValueError(
                 f"{name} needs contact along lines, of a shaper with as many teeth as the pinion "
                 f"({self.pinion_teeth}); "
-                f"with shaper_teeth={self.shaper_teeth} contact is at a point: UnloadedContact has it, and for a model "
-                'Contact(path=point_contact, sharing="mean") or Contact(path=loaded_contact(torque)) with '
-                "facegear.mechanics.paths"
+                f"with shaper_teeth={self.shaper_teeth} contact is at a point: fg.UnloadedContact has it, and for a "
+                'model fg.Contact(path=fg.point_contact, sharing="mean") or '
+                "fg.Contact(path=fg.loaded_contact(torque))"
             )
 
     # --- circles and angles of pinion and shaper ------------------------------------------------------------
@@ -285,7 +291,10 @@ class Drive:
     @cached_property
     @_of_generating
     def inner_limit(self) -> float:
-        """L1 along the shaper's axis, where undercutting ends [m] (3-13)."""
+        """L1 along the shaper's axis, where undercutting ends [m] (3-13): R1 over sin γ.
+
+        Between shafts at 90° it is the coordinate u_s of the edge; else u has its ends in `UnloadedContact.face`.
+        """
         m, gamma_m = self.speed_ratio, math.pi - self.shaft_angle
         p, q = m * math.sin(gamma_m), 1.0 - m * math.cos(gamma_m)
         t = self.undercut_root
@@ -303,7 +312,7 @@ class Drive:
     @cached_property
     @_of_generating
     def outer_limit(self) -> float:
-        """L2 along the shaper's axis, where the tooth becomes pointed [m] (3-14)."""
+        """L2 along the shaper's axis, where the tooth becomes pointed [m] (3-14): R2 over sin γ, as `inner_limit`."""
         alpha, top = self.pointing_angle, self.tooth_top_distance
         return float(twins.outer_limit(alpha, self.base_radius, top, self.speed_ratio, self.shaft_angle))
 

@@ -138,6 +138,11 @@ class TimedPairs(ABC):
     has_lengths: ClassVar[bool] = False
     """Whether contact is along lines, whose lengths may weight their midpoints."""
 
+    @property
+    def centroid_jumps(self) -> bool:
+        """Whether a mean weighted by the lengths jumps as pairs enter and leave: not if they do with a length of 0."""
+        return False
+
     def __post_init__(self) -> None:
         parameters.keep(self, contact_ratio=checked_contact_ratio(self.drive, self.contact_ratio))
 

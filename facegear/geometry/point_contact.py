@@ -26,13 +26,19 @@ from scipy.special import elliprd, elliprf
 from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive, involute
 from facegear.geometry.kinematics import PairStates, TimedPairs
-from facegear.support.parameters import finite, finite_array, keep, nonnegative, positive, within
+from facegear.support.parameters import finite, finite_array, keep, nonnegative, one_of, positive, within
 from facegear.support.types import FloatArray
 
 # Local pressure angles between which contact is looked for [rad], and into how many parts.
 _STEEPEST, _PARTS = 1.5, 600
-# Halvings of a misalignment that leaves no contact, to say how much of it would.
-_HALVINGS = 20
+# Halvings of a misalignment that leaves no contact, to say how much of it would, and digits of that.
+_HALVINGS, _DIGITS = 20, 3
+# Errors of alignment that are taken for such: [m], [rad], and how far off a pivot may be [m].
+_LONGEST, _WIDEST, _FARTHEST = 0.1, 0.1, 100.0
+# What a coordinate along the face may miss its ends by, relative.
+_ROUNDING = 1e-9
+# Forces [N] and moduli [Pa] for which Hertz' ellipse is computed: below and above it is no size that a number can have.
+_LEAST_FORCE, _LARGEST_MODULUS = 1e-12, 1e15
 
 
 @dataclass(frozen=True)
@@ -56,7 +62,7 @@ class Misalignment:
     Raises
     ------
     TypeError, ValueError
-        If a value is not a finite number, or the angle more than 0.1 rad.
+        If a value is not a finite number, a length more than 0.1 m (`pivot`: 100 m), or the angle more than 0.1 rad.
     """
 
     offset: float = 0.0
@@ -68,13 +74,22 @@ class Misalignment:
     def __post_init__(self) -> None:
         for part in fields(self):
             value = getattr(self, part.name)
-            if value is not None:
-                unit = "rad" if part.name == "shaft_angle" else "m"
-                keep(self, **{part.name: finite(part.name, value, unit)})
-        if abs(self.shaft_angle) > 0.1:
-            raise ValueError(
-                f"shaft_angle must be at most 0.1 rad either way, as errors of alignment are; got {self.shaft_angle!r}"
-            )
+            if value is not None or part.name != "pivot":
+                keep(self, **{part.name: _error(part.name, value)})
+
+
+def _error(name: str, value: object) -> float:
+    """Check one of the fields of :class:`Misalignment`."""
+    unit, most, meant = ("rad", _WIDEST, "degrees") if name == "shaft_angle" else ("m", _LONGEST, "mm")
+    if name == "pivot":
+        most = _FARTHEST
+    number = finite(name, value, unit)
+    if abs(number) <= most:
+        return number
+    smaller = math.radians(number) if meant == "degrees" else 1e-3 * number
+    hint = f" (in {meant}? {name}={smaller:.4g} would be valid)" if abs(smaller) <= most else ""
+    kind = "" if name == "pivot" else ", as errors of alignment are"
+    raise ValueError(f"{name} must be at most {most:g} {unit} either way{kind}; got {number!r} {unit}{hint}")
 
 
 ALIGNED = Misalignment()
@@ -138,8 +153,15 @@ class UnloadedContact:
                 "as many teeth it is along lines"
             )
         fault = self._fault()
-        if fault is not None:
-            raise ValueError(f"misalignment leaves no {fault}; {self.misalignment!r}{self._window()}")
+        if fault is None:
+            return
+        drive, aligned = self.drive, _unchecked(self.drive, self._share(0.0))._fault()
+        if aligned is not None:
+            raise ValueError(
+                f"pinion_teeth={drive.pinion_teeth}, gear_teeth={drive.gear_teeth}, shaper_teeth={drive.shaper_teeth} "
+                f"leave aligned gears no {aligned}; take other tooth numbers"
+            )
+        raise ValueError(f"misalignment leaves no {fault}; {self.misalignment!r}{self._hint()}")
 
     def _fault(self) -> str | None:
         """Say what the misalignment leaves none of, if it does."""
@@ -153,20 +175,31 @@ class UnloadedContact:
             return None
         return f"contact on the flank: at −y_p = {1e3 * self._radius_of(lowest):.3f} mm it is {self._beyond(lowest)}"
 
-    def _window(self) -> str:
-        """How much of the misalignment would leave contact, as an end of a message."""
+    def _share(self, share: float) -> Misalignment:
+        """Return so much of the misalignment, about the same pivot."""
+        given = self.misalignment
+        sizes = {
+            part.name: share * getattr(given, part.name) for part in fields(given) if part.name != "pivot"
+        }
+        return Misalignment(**sizes, pivot=given.pivot)
+
+    def _hint(self) -> str:
+        """How much of the misalignment would leave contact, as an end of a message; none of it does."""
         possible, beyond = 0.0, 1.0
         for _ in range(_HALVINGS):
-            share, given = 0.5 * (possible + beyond), self.misalignment
-            less = Misalignment(
-                share * given.offset,
-                share * given.gear_axial,
-                share * given.pinion_axial,
-                share * given.shaft_angle,
-                given.pivot,
-            )
-            possible, beyond = (share, beyond) if _touches(self.drive, less) else (possible, share)
-        return f" ({possible:.2g} of it would leave some)" if possible > 0.0 else ""
+            share = 0.5 * (possible + beyond)
+            touches = _touches(self.drive, self._share(share))
+            possible, beyond = (share, beyond) if touches else (possible, share)
+        if possible == 0.0:
+            return ""
+        # Downwards, so that who follows it has contact.
+        digits = _DIGITS - 1 - math.floor(math.log10(possible))
+        share = math.floor(possible * 10.0**digits) / 10.0**digits
+        return (
+            f" ({share:.{_DIGITS}g} of it would leave some)"
+            if _touches(self.drive, self._share(share))
+            else ""
+        )
 
     # --- where ------------------------------------------------------------------------------------------------
 
@@ -197,8 +230,28 @@ class UnloadedContact:
 
     @property
     def position(self) -> float:
-        """Coordinate u along the shaper's axis at which the flank touches [m], the same all through the mesh."""
+        """Coordinate u at which the flank touches [m], the same all through the mesh, see :attr:`face`."""
         return float(self._region.position(self.pressure_angle))
+
+    @property
+    def face(self) -> tuple[float, float]:
+        """Least and largest coordinate u of a point of the flank [m].
+
+        u is where the shaper makes it: along its axis, from where the axes of shaper and gear meet, to that point
+        (u_s of (3-5)). The limits of the tooth, L1 and L2 (`Drive.inner_limit`, `outer_limit`), lie on the gear plane
+        instead: they are the distances −y_p of its edges from the gear's axis over sin γ, and equal u between shafts at
+        90° only. Otherwise an edge has another u at each height of the tooth, and all of the tooth lies between these.
+        """
+        low, high = (float(self._region.position(q)) for q in self.face_angles)
+        return low, high
+
+    @cached_property
+    def face_angles(self) -> tuple[float, float]:
+        """Least and largest local pressure angle q of a point of the flank [rad]."""
+        shaper, region = self._shaper, self._region
+        rolls = (0.0, shaper.shaper_tip_roll)
+        first = min(region.edge_angle(shaper.flank_start, roll) for roll in rolls)
+        return first, max(region.edge_angle(shaper.outer_radius, roll) for roll in rolls)
 
     # --- when -------------------------------------------------------------------------------------------------
 
@@ -307,7 +360,7 @@ class UnloadedContact:
         Parameters
         ----------
         position : array_like
-            u along the shaper's axis [m], at least that of a zero local pressure angle.
+            u along the shaper's axis [m], between the ends of :attr:`face`.
 
         Returns
         -------
@@ -317,15 +370,19 @@ class UnloadedContact:
         Raises
         ------
         TypeError, ValueError
-            Not numeric, not finite, or where the flank has no point.
+            Not numeric, not finite, or beyond the face.
         """
-        u = finite_array("position", position, "m")
-        least = float(self._region.position(0.0))
-        if np.any(u < least):
+        u, (low, high) = finite_array("position", position, "m"), self.face
+        outside = (u < low * (1.0 - _ROUNDING)) | (u > high * (1.0 + _ROUNDING))
+        if np.any(outside):
+            bad = float(u[outside].flat[0])
+            meant = 1e-3 * bad
+            hint = f" (in mm? {meant:.6g} m would be valid)" if low <= meant <= high else ""
             raise ValueError(
-                f"position must be at least {least:.6g} m, where the flank begins; got {u.min():.6g}"
+                f"position must lie in [{low:.6g}, {high:.6g}] m, the coordinates u along the shaper's axis where the "
+                f"flank has points; got {bad:.6g} m{hint}"
             )
-        angles = np.arccos(least / u)
+        angles = np.arccos(float(self._region.position(0.0)) / u)
         return self._offset(angles) - self._offset(self.pressure_angle)
 
     def _offset(self, q: ArrayLike) -> FloatArray:
@@ -420,9 +477,14 @@ class UnloadedContact:
         Raises
         ------
         TypeError, ValueError
-            If an argument is not a number greater than 0, or the ellipse would be longer than the gear.
+            If an argument is not a number greater than 0, `force` is below 1e-12 N, `modulus` above 1e15 Pa, or the
+            ellipse would be longer than the gear.
         """
         force, modulus = positive("force", force, "N"), positive("modulus", modulus, "Pa")
+        if force < _LEAST_FORCE:
+            raise ValueError(f"force must be at least {_LEAST_FORCE:g} N, got {force!r} N")
+        if modulus > _LARGEST_MODULUS:
+            raise ValueError(f"modulus must be at most {_LARGEST_MODULUS:g} Pa, got {modulus!r} Pa")
         smaller, larger = self.principal_curvatures.tolist()
         ellipse = _hertz(smaller, larger, force, modulus)
         if ellipse.long > self.drive.outer_radius:
@@ -444,7 +506,7 @@ class UnloadedContact:
         Returns
         -------
         inner, outer : float
-            u [m], cut off at the edges of the flank.
+            u [m], cut off at the edges of the flank as they are where the path of contact has its middle.
 
         Raises
         ------
@@ -466,6 +528,48 @@ class UnloadedContact:
         return float(self._region.position(ends[0])), float(self._region.position(ends[1]))
 
     # --- what errors do ---------------------------------------------------------------------------------------
+
+    def window(self, error: str) -> tuple[float, float]:
+        """Range of one error of alignment in which contact stays on the flank, all others as they are.
+
+        Parameters
+        ----------
+        error : {"offset", "gear_axial", "shaft_angle"}
+            Field of `misalignment` that is varied.
+
+        Returns
+        -------
+        low, high : float
+            Of the error, in its unit: beyond them an edge bears, or nothing. To 1e-9 of the module, or of a radian.
+
+        Raises
+        ------
+        ValueError
+            If there is no such error.
+
+        Examples
+        --------
+        >>> low, high = UnloadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27)).window("offset")
+        >>> round(1e6 * low, 1), round(1e6 * high, 1)
+        (-1098.3, 265.5)
+        """
+        one_of("error", error, ("offset", "gear_axial", "shaft_angle"))
+        start, module = getattr(self.misalignment, error), self.drive.module
+        unit, most = (1.0, _WIDEST) if error == "shaft_angle" else (module, min(10.0 * module, _LONGEST))
+
+        def holds(value: float) -> bool:
+            return abs(value) <= most and _touches(self.drive, replace(self.misalignment, **{error: value}))
+
+        ends = []
+        for sense in (-1.0, 1.0):
+            inside, outside = 0.0, 1e-6 * unit
+            while holds(start + sense * outside) and outside < most:
+                inside, outside = outside, 2.0 * outside
+            while outside - inside > 1e-9 * unit:
+                middle = 0.5 * (inside + outside)
+                inside, outside = (middle, outside) if holds(start + sense * middle) else (inside, middle)
+            ends.append(start + sense * inside)
+        return ends[0], ends[1]
 
     @property
     def backlash(self) -> float:
@@ -528,59 +632,16 @@ class PointPath(TimedPairs):
         )
 
 
-def window(drive: Drive, error: str, misalignment: Misalignment = ALIGNED) -> tuple[float, float]:
-    """Range of one error of alignment in which contact stays on the flank, all others as they are.
-
-    Parameters
-    ----------
-    drive : Drive
-        Its `shaper_teeth` exceed `pinion_teeth`.
-    error : {"offset", "gear_axial", "shaft_angle"}
-        Field of `misalignment` that is varied.
-    misalignment : Misalignment
-        Contact is on the flank with it. Default: none.
-
-    Returns
-    -------
-    low, high : float
-        Of the error, in its unit: beyond them an edge bears, or nothing. To 1e-9 of the module, or of a radian.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If there is no such error, or no contact to begin with.
-    """
-    names = ("offset", "gear_axial", "shaft_angle")
-    if error not in names:
-        raise ValueError(f"error must be one of {', '.join(names)}, got {error!r}")
-    start = float(getattr(misalignment, error))
-    UnloadedContact(drive, misalignment)
-    unit, most = (1.0, 0.1) if error == "shaft_angle" else (drive.module, 10.0 * drive.module)
-
-    def holds(value: float) -> bool:
-        try:
-            given = replace(misalignment, **{error: value})
-        except ValueError:
-            return False
-        return _touches(drive, given)
-
-    ends = []
-    for sense in (-1.0, 1.0):
-        inside, outside = 0.0, 1e-6 * unit
-        while holds(start + sense * outside) and outside < most:
-            inside, outside = outside, 2.0 * outside
-        while outside - inside > 1e-9 * unit:
-            middle = 0.5 * (inside + outside)
-            inside, outside = (middle, outside) if holds(start + sense * middle) else (inside, middle)
-        ends.append(start + sense * inside)
-    return ends[0], ends[1]
-
-
 def _touches(drive: Drive, misalignment: Misalignment) -> bool:
     """Whether a misalignment leaves contact, without the message that says why it does not."""
+    return _unchecked(drive, misalignment)._fault() is None
+
+
+def _unchecked(drive: Drive, misalignment: Misalignment) -> UnloadedContact:
+    """Return the contact of a misalignment that may leave none."""
     contact = object.__new__(UnloadedContact)
     keep(contact, drive=drive, misalignment=misalignment)
-    return contact._fault() is None
+    return contact
 
 
 def _normal(q: ArrayLike) -> FloatArray:

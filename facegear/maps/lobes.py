@@ -50,6 +50,10 @@ class UnstableTopError(ValueError):
         self.tongue = tongue
         self.thickness_ratio = thickness_ratio
 
+    def __reduce__(self) -> tuple[type, tuple[Tongue, float]]:
+        """Come out of another process as what it was made of, not from its message."""
+        return type(self), (self.tongue, self.thickness_ratio)
+
 
 class StableRangeError(ValueError):
     """A model is stable in the whole range of thickness.
@@ -66,6 +70,11 @@ class StableRangeError(ValueError):
             f"stable from {speeds[0]:.6g} to {speeds[1]:.6g} rad/s"
         )
         self.thickness_ratio = thickness_ratio
+        self._speeds = speeds
+
+    def __reduce__(self) -> tuple[type, tuple[float, tuple[float, float]]]:
+        """Come out of another process as what it was made of, not from its message."""
+        return type(self), (self.thickness_ratio, self._speeds)
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
 """How pairs of teeth give way where their flanks are pressed.
 
-A `Compliance` says what force a pair has at an approach along the normal. Two of them bound the truth: slices of a
-Winkler bedding, each for itself (`SliceCompliance`), and rigid teeth on one spring a pair (`PairCompliance`).
+A `Compliance` says what force a pair has at an approach along the normal. Two of them are the ends of what holds a
+tooth together along its face: slices of a Winkler bedding, each for itself (`SliceCompliance`), and rigid teeth on one
+spring a pair (`PairCompliance`). They bound teeth of the same mean stiffness.
 """
 
 from __future__ import annotations
@@ -73,6 +74,9 @@ class Compliance(ABC):
 
     events: ClassVar[tuple[tuple[int, int], ...]]
     """What is pressed, or how, changes where an end of a line (0 inner, 1 outer) passes so many times √δ."""
+
+    presses_points: ClassVar[bool] = False
+    """Whether a line of no length, as the first and the last, can carry a load."""
 
     def reserves(self, approach: FloatArray, lines: Lines) -> FloatArray:
         """Quantities of which the signs tell the changes that no √δ tells, shape (m,) + S; here there are none."""
@@ -148,6 +152,7 @@ class PairCompliance(Compliance):
 
     # Contact begins, ends, or its slice comes to an end of the line.
     events = ((0, 1), (1, -1), (0, 0), (1, 0))
+    presses_points = True
 
     def _nearest(self, lines: Lines) -> FloatArray:
         return np.asarray(np.clip(0.0, lines.inner, lines.outer))

@@ -40,8 +40,9 @@ class Contact:
         :mod:`facegear.mechanics.paths`, on their own clocks; or another
         :class:`facegear.geometry.kinematics.TimedPairs`.
     sharing : {"centroid", "mean", "each"}
-        One load at the mean contact point, weighted by the lengths of the contact lines (3-21) or with equal weights;
-        or one load for each tooth pair, numbered by age, there while the pair is in mesh.
+        One load at the mean contact point, weighted by the lengths of the contact lines (3-21) or with equal weights,
+        the only mean of a contact at a point, which has no lines; or one load for each tooth pair, numbered by age,
+        there while the pair is in mesh.
     contact_ratio : float, optional
         Mesh periods that a tooth pair stays in mesh, 1 or more, and 1.001 or more where total rate follows a mean
         point. Default None: that of the path, whatever the drive, which is Tregold's, as printed, for those of the
@@ -107,6 +108,16 @@ class Contact:
             Saying why: the path is none, the contact ratio is out of range, the path has no lengths to share by, or
             total rate would follow a point without a finite speed.
         """
+        path = self._path_of(drive)
+        if self.sharing == "centroid" and not path.has_lengths:
+            raise ValueError(
+                f'sharing must be "mean" or "each" for {type(path).__name__}, which has no contact lines to weight by, '
+                f"got {self.sharing!r}"
+            )
+        if self.rate == "total":
+            path.require_followable("rate = 'total'", self.sharing != "each")
+
+    def _path_of(self, drive: Drive) -> TimedPairs:
         try:
             path = _path(self.path, drive, self.contact_ratio)
         except TypeError:
@@ -116,13 +127,35 @@ class Contact:
                 "path must be a class of contact points (a TimedPairs, such as ContactPath) or a function of drive and "
                 f"contact ratio that returns one, got {self.path!r}"
             )
-        if self.sharing == "centroid" and not path.has_lengths:
+        return path
+
+    def require_one_load(self, drive: Drive, mass: float) -> None:
+        """As :meth:`require`, of one load a mesh that may have a mass, which follows no contact point that jumps.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As there, or if each pair has a load, or a mass is to follow a mean point that jumps.
+        """
+        path = self._path_of(drive)
+        if self.sharing == "each" or (self.sharing == "centroid" and not path.has_lengths):
+            means = '"centroid" or "mean"' if path.has_lengths else '"mean"'
             raise ValueError(
-                f'sharing must be "mean" or "each" for {type(path).__name__}, which has no contact lines to weight by, '
-                f"got {self.sharing!r}"
+                f"sharing must be {means} for one load a pinion on a {type(path).__name__}, got {self.sharing!r}"
             )
-        if self.rate == "total":
-            path.require_followable("rate = 'total'", self.sharing != "each")
+        self.require(drive)
+        if self.rate == "frozen" or mass == 0.0 or (self.sharing == "centroid" and not path.centroid_jumps):
+            return
+        ways = ['rate "frozen"']
+        if self.sharing == "centroid":
+            ways.insert(0, 'compliance "slice" or "plate", whose pairs take up their loads little by little')
+        elif path.has_lengths and not path.centroid_jumps:
+            ways.insert(0, 'sharing "centroid"')
+        raise ValueError(
+            f'load.mass must be 0 where a mean contact point is followed (rate "total", sharing "{self.sharing}") that '
+            f"jumps as pairs take up and drop their loads, for no mass can; else take {', or '.join(ways)}; got "
+            f"load.mass={mass!r}"
+        )
 
     def places(self, drive: Drive) -> tuple[LoadPlace, ...]:
         """Place of each load against t/T0 for a pinion at angle 0, computed once for each drive.

@@ -5,9 +5,12 @@ All pairs in mesh have one approach, as both gears turn as rigid bodies; δ foll
 every instant. Where it exceeds all gaps, contact is along whole lines, as with a shaper of the pinion's teeth; as it
 goes to 0, at the point of the unloaded contact.
 
-How a tooth gives way is a `Compliance`. Two of them bound the truth: slices of a Winkler bedding, each for itself
-(`slice`), and rigid teeth on one spring a pair (`pair`). A tooth between them is an elastic plate
-(`plate`, :mod:`facegear.mechanics.tooth_plate`), which resists more where its neighbours are not pressed.
+How a tooth gives way is a `Compliance`. Two of them are the ends of what holds the slices of a tooth together: slices
+of a Winkler bedding, each for itself (`slice`), and rigid teeth on one spring a pair (`pair`), both with the mean
+stiffness of (7-2). Between them is an elastic plate (`plate`, :mod:`facegear.mechanics.tooth_plate`), which resists
+more where its neighbours are not pressed. It has a stiffness of its own, some 2.7 times that of (7-2) with the drive of
+the examples: contact ratio and approach lie between those of the others if these are given the same, and need not
+otherwise.
 """
 
 from __future__ import annotations
@@ -28,14 +31,18 @@ from facegear.geometry.point_contact import ALIGNED, Misalignment
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.slices import Slices
 from facegear.mechanics.tooth_plate import PlateCompliance
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.torsional import checked_factor, mesh_stiffness
 from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
 from facegear.support.types import FloatArray
 
 # Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.
 _INSTANTS, _FINER = 64, 4
+# The first and the last line have no length but by rounding: so near to them others are looked at [mesh periods].
+_NEXT = 1e-10
 # Relative error of series over a mesh period.
 _TOLERANCE = 1e-12
+# Force over k_m, in modules: below, an approach is lost in rounding; above, teeth would give way by all of a module.
+_LEAST, _MOST = 1e-18, 1.0
 # How short a piece must be, in mesh periods, before it may have more.
 _SHORT = 1e-3
 
@@ -87,6 +94,14 @@ def checked_torque(torque: float) -> float:
     return number
 
 
+def require_kinds(instance: object, **kinds: type) -> None:
+    """Refuse fields of a dataclass that are not of their kinds, naming the first."""
+    for name, kind in kinds.items():
+        value = getattr(instance, name)
+        if not isinstance(value, kind):
+            raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
+
+
 @lru_cache(maxsize=64)
 def _slices(drive: Drive, misalignment: Misalignment) -> Slices:
     return Slices(drive, misalignment)
@@ -101,17 +116,20 @@ class LoadedContact:
     drive : Drive
         Its `shaper_teeth` exceed `pinion_teeth`.
     torque : float
-        At the pinion [N m], greater than 0.
+        At the pinion [N m], greater than 0. Its force over k_m may be from 1e-18 modules, next to which nothing can be
+        told from rounding, to 1 module, by which no tooth gives way.
     misalignment : Misalignment
         Default: none.
     compliance : {"slice", "plate", "pair"}
         How teeth give way: each slice of the face for itself, k_m/L (`SliceCompliance`), each pair as a rigid body on
-        one spring k_m (`PairCompliance`), or, between these bounds, as elastic plates of their own thickness
-        (`PlateCompliance`), which have a stiffness of their own.
+        one spring k_m (`PairCompliance`), or as elastic plates of their own thickness (`PlateCompliance`). With one and
+        the same mean stiffness the first two would bound contact ratio and approach of plates; but plates have a
+        stiffness of their own, with the drive of the examples some 2.7 times k_m.
     correction_factor : float
-        c_f of the mean mesh stiffness k_m (7-2), from above 0 to 1; of plates, what it leaves of their stiffness.
+        c_f of the mean mesh stiffness k_m (7-2), from 1e-6 to 1; of plates, what it leaves of their stiffness.
     material : Material
-        Of the teeth. Default: steel.
+        Of the teeth. Default: steel. Next to the contact flanks of plates give way as under a Hertzian pressure of
+        E/200, 1 GPa with steel, so that under any law a contact depends on the torque over E alone.
 
     Raises
     ------
@@ -135,12 +153,20 @@ class LoadedContact:
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        for name, kind in (("drive", Drive), ("misalignment", Misalignment), ("material", Material)):
-            if not isinstance(getattr(self, name), kind):
-                raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
+        require_kinds(self, drive=Drive, misalignment=Misalignment, material=Material)
         one_of("compliance", self.compliance, tuple(COMPLIANCES))
         keep(self, torque=checked_torque(self.torque))
-        mesh_stiffness(self.drive, self.correction_factor, self.material)
+        keep(self, correction_factor=checked_factor(self.correction_factor))
+        # Under which a pair pressed over the whole face gives way by a module.
+        whole = self.drive.module * self.pair_stiffness * self.drive.base_radius
+        least, most = _LEAST * whole, _MOST * whole
+        if not least <= self.torque <= most:
+            more = "teeth would give way by more than a module"
+            why = more if self.torque > most else "less is lost in rounding"
+            raise ValueError(
+                f"torque must lie in [{least:.3g}, {most:.3g}] N m for this drive, material and correction_factor: "
+                f"{why}; got {self.torque!r} N m"
+            )
         _ = self.slices
 
     @property
@@ -207,6 +233,7 @@ class LoadedContact:
         grid = np.append(np.arange(count + 1) / instants, self.slices.sweep)
         approach = self._approach(np.append(phases, self.slices.sweep))
         reach = np.sqrt(np.append(np.resize(approach[:-1], count + 1), approach[-1]))
+        grid = np.clip(grid, _NEXT, self.slices.sweep - _NEXT)
         lines = self._lines(grid)
         return np.sort(
             np.concatenate([self._passages(grid, lines, reach), self._turns(grid, lines, reach**2)])
@@ -285,6 +312,11 @@ class LoadedContact:
         return self._mesh[1] - self._mesh[0]
 
     @property
+    def begins_or_ends_at_once(self) -> bool:
+        """Whether a pair takes up or drops a load at once: the law gives some to the first line, or the last."""
+        return self._law.presses_points and (self._mesh[0] <= 0.0 or self._mesh[1] >= self.slices.sweep)
+
+    @property
     def breakpoints(self) -> tuple[float, ...]:
         """Fractions of T0, ascending from 0 where a pair begins to be pressed, between which all is smooth."""
         return tuple(self._mesh[2].breakpoints.tolist())
@@ -351,9 +383,9 @@ class LoadedContact:
         """
         return self.pairs_of_age(_ages(finite_array("fraction", fraction), self.contact_ratio))
 
-    def pairs_of_age(self, ages: FloatArray) -> LoadedPairs:
-        """As :meth:`pairs`, of pairs that have been pressed for so many mesh periods, (P,) + S."""
-        since_first_line = ages + self._mesh[0]
+    def pairs_of_age(self, ages: ArrayLike) -> LoadedPairs:
+        """As :meth:`pairs`, of pairs that have been pressed for so many mesh periods, of any shape."""
+        since_first_line = finite_array("ages", ages) + self._mesh[0]
         approach = self._approach(since_first_line)
         lines = self._lines(since_first_line)
         force, stiffness = self._law.force(approach, lines)
@@ -374,7 +406,7 @@ class LoadedContact:
         fraction : array_like, shape S
             T/T0, from 0 where a pair begins to be pressed; period 1.
         position : array_like, shape (m,)
-            U along the shaper's axis [m].
+            Coordinates u along the shaper's axis [m], between the ends of :attr:`UnloadedContact.face`.
 
         Returns
         -------
@@ -384,15 +416,22 @@ class LoadedContact:
         Raises
         ------
         TypeError, ValueError
-            Not numeric or not finite, or where the flank has no point.
+            Not numeric or not finite, or beyond the face.
         """
         instants, u = finite_array("fraction", fraction), finite_array("position", position, "m")
         ages = _ages(instants, self.contact_ratio) + self._mesh[0]
-        return self.line_load(ages, np.broadcast_to(self.slices.at(u), (*ages.shape, u.size)))
+        return self.line_load(ages, self.slices.at(u))
 
-    def line_load(self, age: FloatArray, s: FloatArray) -> FloatArray:
-        """As :meth:`pressure`, on slices s of lines, S + (m,) [√m], of an age counted as by `slices.ends`, S."""
-        return self._law.pressure(self._approach(age), self._lines(age), s)
+    def line_load(self, age: ArrayLike, s: ArrayLike) -> FloatArray:
+        """As :meth:`pressure`, on slices s, (m,) or S + (m,) [√m], of lines of an age as `slices.ends` counts it, S."""
+        ages, places = finite_array("age", age), np.atleast_1d(finite_array("s", s, "√m"))
+        if places.shape[:-1] not in ((), ages.shape):
+            raise ValueError(
+                f"s must list slices, the same ones on each line or as many rows as age has, {ages.shape}, got shape "
+                f"{places.shape}"
+            )
+        places = np.broadcast_to(places, (*ages.shape, places.shape[-1]))
+        return self._law.pressure(self._approach(ages), self._lines(ages), places)
 
 
 def _ages(instants: FloatArray, longest: float) -> FloatArray:

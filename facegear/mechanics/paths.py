@@ -18,8 +18,15 @@ from numpy.typing import NDArray
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, PairStates, TimedPairs
 from facegear.geometry.point_contact import ALIGNED, Misalignment, PointPath, UnloadedContact
-from facegear.mechanics.loaded_contact import COMPLIANCES, LoadedContact, checked_torque, fit_tolerances
-from facegear.support.parameters import STEEL, Material, one_of
+from facegear.mechanics.loaded_contact import (
+    COMPLIANCES,
+    LoadedContact,
+    checked_torque,
+    fit_tolerances,
+    require_kinds,
+)
+from facegear.mechanics.torsional import checked_factor
+from facegear.support.parameters import STEEL, Material, keep, one_of
 from facegear.support.types import FloatArray
 
 
@@ -103,7 +110,12 @@ class loaded_contact:  # noqa: N801 (one of three paths, the other two are funct
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        checked_torque(self.torque)
+        keep(
+            self,
+            torque=checked_torque(self.torque),
+            correction_factor=checked_factor(self.correction_factor),
+        )
+        require_kinds(self, misalignment=Misalignment, material=Material)
         one_of("compliance", self.compliance, tuple(COMPLIANCES))
 
     def of(self, drive: Drive) -> LoadedContact:
@@ -169,6 +181,11 @@ class LoadedPath(TimedPairs):
     def fit_tolerances(self) -> FloatArray:
         """Relative errors that a fit of the positions may have, shape (pieces,) [-]."""
         return fit_tolerances(self.breakpoints)
+
+    @property
+    def centroid_jumps(self) -> bool:
+        """Whether a pair takes up or drops its load at once, as rigid teeth do under a load that spans the face."""
+        return self.contact.begins_or_ends_at_once
 
     def require_followable(self, name: str, mean: bool) -> None:
         """Refuse lines that come down to a base circle, at a speed without limit."""

@@ -134,6 +134,11 @@ class SharedPath(TimedPairs):
         return self.own.fit_tolerances
 
     @property
+    def centroid_jumps(self) -> bool:
+        """Whether the centroid of the pairs jumps, as on the path whose load is shared."""
+        return self.own.centroid_jumps
+
+    @property
     def pitch_passage(self) -> float:
         """Mesh periods since entry at which a pair passes the pitch point."""
         return self.own.pitch_passage

@@ -84,10 +84,7 @@ class Slices:
     @cached_property
     def _range(self) -> tuple[float, float]:
         """Local pressure angles of the face, and a little more [rad]."""
-        shaper = self.drive.generating
-        rolls = (0.0, shaper.shaper_tip_roll)
-        first = min(self._region.edge_angle(shaper.flank_start, roll) for roll in rolls)
-        last = max(self._region.edge_angle(shaper.outer_radius, roll) for roll in rolls)
+        first, last = self.contact.face_angles
         return max(first - _MARGIN, _FLATTEST), min(last + _MARGIN, _STEEPEST)
 
     # --- gap -------------------------------------------------------------------------------------------------
@@ -118,7 +115,7 @@ class Slices:
         return np.asarray(away * np.sqrt(bend @ (0.5 * _WEIGHTS * (1.0 - t))), dtype=float)
 
     def at(self, position: FloatArray) -> FloatArray:
-        """Slices s at coordinates u along the shaper's axis [√m], which must have a point of the flank."""
+        """Slices s at coordinates u along the shaper's axis [√m], between the ends of :attr:`UnloadedContact.face`."""
         gap = self.contact.gap(position)
         return np.asarray(np.sign(position - self.contact.position) * np.sqrt(np.maximum(gap, 0.0)))
 
@@ -134,7 +131,7 @@ class Slices:
 
     @cached_property
     def position(self) -> Chebyshev:
-        """Coordinate u along the shaper's axis of the slice s [m]."""
+        """Coordinate u along the shaper's axis of the slice s [m], see :attr:`UnloadedContact.face`."""
         low, high = self.pressure_angle.domain.tolist()
         return _polynomial(_resolved(lambda s: self._region.position(self.pressure_angle(s)), low, high))
 
@@ -187,11 +184,13 @@ class Slices:
             return np.asarray(region.depth(q, self.roll(q, line)) - shaper.tooth_top_distance)
 
         def outside(q: FloatArray, line: FloatArray, radius: FloatArray) -> FloatArray:
-            return np.asarray(region.radial_position(q, self.roll(q, line)) - radius)
+            # Before the involute begins as at its beginning, where the radius rises with q.
+            return np.asarray(region.radial_position(q, np.maximum(self.roll(q, line), 0.0)) - radius)
 
         top = crossing(above, first, most, lines)
         inner = crossing(outside, first, most, lines, shaper.flank_start)
-        outer = crossing(outside, first, most, lines, shaper.outer_radius)
+        # From where lines cannot be, so that those of which nothing is left are told from those that end.
+        outer = crossing(outside, least, most, lines, shaper.outer_radius)
         lower = [base, own_base, top, inner]
         if self.drive.shaft_angle > 0.5 * math.pi:
             ends = np.maximum.reduce(lower), np.minimum.reduce([tip, own_tip, outer])
@@ -199,7 +198,7 @@ class Slices:
             def clear(q: FloatArray, line: FloatArray) -> FloatArray:
                 return region.shaper.clearance(q, self.roll(q, line))
 
-            # A little beyond, so that lines of which nothing is left are told from those that end.
+            # A little beyond, for the same reason.
             lower.append(crossing(clear, ends[0], np.minimum(np.maximum(*ends) + _MARGIN, most), lines))
         return np.stack(lower), np.stack([tip, own_tip, outer])
 
@@ -228,17 +227,24 @@ class Slices:
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """Ages of lines at which another edge ends them [mesh periods], ascending."""
-        ages = np.linspace(0.0, self.sweep, _LINES + 1)[1:-1]
+        # The first and the last line have no length, and so no edge: lines nearer and nearer to them.
+        near = _GRADING ** -np.arange(1.0, round(math.log(1.0 / _SHORTEST, _GRADING))) / _LINES
+        inside = np.arange(1.0, _LINES) / _LINES
+        ages = self.sweep * np.concatenate([near[::-1], inside, 1.0 - near])
         found = []
         for side in (0, 1):
             labels = self._edges(ages, side)
             for k in np.flatnonzero(np.diff(labels)):
-                low, high, label = float(ages[k]), float(ages[k + 1]), labels[k]
-                while high - low > _SAME:
-                    between = np.linspace(low, high, _SECTIONS)
-                    first = int(np.argmax(self._edges(between, side) != label))
-                    low, high = float(between[first - 1]), float(between[first])
-                found.append(high)
+                low, label = float(ages[k]), labels[k]
+                # There may be several edges in turn.
+                while label != labels[k + 1]:
+                    high = float(ages[k + 1])
+                    while high - low > _SAME:
+                        between = np.linspace(low, high, _SECTIONS)
+                        first = int(np.argmax(self._edges(between, side) != label))
+                        low, high = float(between[first - 1]), float(between[first])
+                    found.append(high)
+                    low, label = high, self._edges(np.array([high]), side)[0]
         return tuple(sorted(found))
 
     def _edges(self, ages: FloatArray, side: int) -> NDArray[np.int64]:

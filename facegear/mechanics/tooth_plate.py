@@ -1,4 +1,4 @@
-"""Teeth as cantilever plates: a compliance between slices of their own and rigid teeth.
+"""Teeth as cantilever plates: a compliance between slices, each for itself, and rigid teeth of the same mean stiffness.
 
 A tooth under a load somewhere along its face gives way there most, and beside it less, as its face holds together.
 Here it is a plate clamped at its root, of the true thickness of the tooth against height and along the face, that
@@ -9,7 +9,8 @@ finite strip method). The deflection is found after Rayleigh and Ritz, in polyno
 which the shear jumps, it converges only as a power of their number: what they leave out is one or two hundredths.
 
 Next to the contact the flanks give way besides, as two cylinders do that touch along a line. That depends on the load
-by a logarithm, and is taken here for a constant per length of face, that at a Hertzian pressure of 1 GPa.
+by a logarithm, and is taken here for a constant per length of face, that at a Hertzian pressure of E/200: of steel
+1 GPa. All of a tooth's compliance is so in inverse proportion to E, and the contact depends on load over E alone.
 
 What a pair of teeth has in contact is then an integral equation over the slices s that are pressed, u their place
 along the face, p the load per length and δ the approach:
@@ -47,8 +48,8 @@ from facegear.support.types import FloatArray
 _ACROSS, _ALONG = 6, 12
 # Shear correction of a rectangular section.
 _SHEAR = 5.0 / 6.0
-# Hertzian pressure for which the local compliance is taken [Pa].
-_PRESSURE = 1e9
+# Hertzian pressure for which the local compliance is taken, over E: 1 GPa with steel.
+_PRESSURE = 0.005
 # No tooth is thinner than so many modules: next to R2 its top comes to a point.
 _THINNEST = 0.05
 # Points of the involute between which its chord is interpolated.
@@ -241,12 +242,17 @@ class Tooth(ABC):
 
 
 def face(slices: Slices) -> tuple[float, float]:
-    """Coordinates u of the inner and outer end of the face [m], with all slices that come in mesh."""
+    """Coordinates u of the inner and outer end of the face at the height of the shaper's pitch circle [m].
+
+    With all slices that come in mesh, and without what lies inside of all of the flank: the edge may not reach to that
+    height.
+    """
     drive = slices.drive.generating
     offset = drive.pitch_radius / math.tan(drive.shaft_angle)
     used = [slices.position(end) for end in slices.ends(slices.breakpoints)]
     start = drive.flank_start / math.sin(drive.shaft_angle) + offset
-    return min(start, float(used[0].min())), max(drive.outer_limit + offset, float(used[1].max()))
+    inner = max(min(start, float(used[0].min())), slices.contact.face[0])
+    return inner, max(drive.outer_limit + offset, float(used[1].max()))
 
 
 @dataclass(frozen=True)
@@ -379,10 +385,13 @@ def local_compliance(slices: Slices, material: Material) -> float:
     Two cylinders of one material come nearer by p 2(1 − ν²)/(πE) [ln(4 d1 d2/a²) − ν/(1 − ν)], with the half width a of
     the contact and depths d, here as far as the middle of the teeth (Weber and Banaschek, Formänderung und
     Profilrücknahme bei gerad- und schrägverzahnten Rädern, 1953; Johnson, Contact Mechanics, section 5.6). a is that
-    at 1 GPa in the middle of the path of the unloaded contact. With the drive of the examples λ is 1.55e-11 m²/N.
+    at a Hertzian pressure p0 of 0.005 E, with steel 1 GPa, in the middle of the path of the unloaded contact: as a =
+    4 p0/(κE'), E' = E/(1 − ν²), it does not depend on E, and λ does by 1/E' alone. With the drive of the examples λ is
+    1.55e-11 m²/N.
     """
     contact, stiffness = slices.contact, material.youngs_modulus / (1.0 - material.poissons_ratio**2)
-    half_width = 4.0 * _PRESSURE / (float(contact.principal_curvatures[1]) * stiffness)
+    pressure = _PRESSURE * material.youngs_modulus
+    half_width = 4.0 * pressure / (float(contact.principal_curvatures[1]) * stiffness)
     q, roll = np.array(contact.pressure_angle), np.array(0.5 * contact.rolls.sum())
     loads = [tooth.load(q, roll) for tooth in _teeth(slices, material)]
     # Half the thickness across is |up| over the sine of the force, and the depth longer by its cosine.

@@ -43,6 +43,9 @@ from facegear.support.types import FloatArray
 
 Arm = Literal["printed", "conjugate"]
 
+# Least c_f of (7-2) that is taken for one.
+_LEAST_FACTOR = 1e-6
+
 DEDENDUM = 1.25
 """Dedendum H over addendum a_g in the model of the tooth as a cantilever (7-1)."""
 
@@ -74,7 +77,7 @@ def mesh_stiffness(drive: Drive, correction_factor: float, material: Material = 
     ----------
     drive : Drive
     correction_factor : float
-        c_f, from above 0 to 1: what gear bodies and bearings leave of the stiffness of the teeth.
+        c_f, from 1e-6 to 1: what gear bodies and bearings leave of the stiffness of the teeth.
     material : Material, optional
 
     Returns
@@ -85,15 +88,20 @@ def mesh_stiffness(drive: Drive, correction_factor: float, material: Material = 
     Raises
     ------
     TypeError, ValueError
-        If the factor is not a number above 0 and up to 1.
+        If the factor is not a number in that range.
 
     Examples
     --------
     >>> f"{mesh_stiffness(Drive(31, 107, 3.175e-3), 0.5):.3g}"
     '1.58e+08'
     """
-    positive("correction_factor", correction_factor)
-    return within("correction_factor", correction_factor, 0.0, 1.0) * tooth_stiffness(drive, material) / 2.0
+    return checked_factor(correction_factor) * tooth_stiffness(drive, material) / 2.0
+
+
+def checked_factor(correction_factor: float) -> float:
+    """Return c_f of :func:`mesh_stiffness`; errors as there."""
+    hint = "what gear bodies and bearings leave of the stiffness of the teeth"
+    return within("correction_factor", correction_factor, _LEAST_FACTOR, 1.0, hint=hint)
 
 
 def cylinder_inertia(radius: float, height: float, density: float = STEEL.density) -> float:

@@ -123,7 +123,7 @@ class PinionsOnDisk:
             raise TypeError(f"force must be a DrivingForce or None, got {self.force!r}")
         if self.force is not None:
             self.force.require(self.body)
-        self.contact.require(self.body.drive)
+        self._require_contact()
         angles = finite_array("pinion_angles", self.pinion_angles, "rad")
         if angles.ndim != 1 or angles.size == 0:
             raise ValueError(f"pinion_angles must list one angle a pinion, got {self.pinion_angles!r}")
@@ -135,6 +135,10 @@ class PinionsOnDisk:
             if phases.shape != angles.shape:
                 raise ValueError(f"phases must list one a pinion, {angles.size}, got {self.phases!r}")
             keep(self, phases=tuple(phases.tolist()))
+
+    def _require_contact(self) -> None:
+        """Refuse a contact that the model does not take."""
+        self.contact.require(self.body.drive)
 
     @property
     def contact_ratio(self) -> float:
@@ -225,16 +229,6 @@ class Transverse(PinionsOnDisk):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.contact.sharing == "each":
-            raise ValueError(
-                f'sharing must be "centroid" or "mean" for one load a pinion, got {self.contact.sharing!r}'
-            )
-        if self.contact.rate == "total" and self.contact.sharing == "mean" and self.load.mass > 0.0:
-            raise ValueError(
-                'sharing must be "centroid" where a pinion with a mass follows its contact (rate = "total"): the mean '
-                f"jumps as pairs enter and leave, and no mass can; got {self.contact.sharing!r} with "
-                f"load.mass={self.load.mass!r}"
-            )
         if self.phases is not None:
             return
         angles = np.mod(self.pinion_angles, 2 * math.pi)
@@ -244,6 +238,10 @@ class Transverse(PinionsOnDisk):
             raise ValueError(
                 f"pinion_angles must differ from one another, unless phases are given, got {self.pinion_angles!r}"
             )
+
+    def _require_contact(self) -> None:
+        """Refuse loads of several pairs, and a mean point that jumps under a rigid pinion."""
+        self.contact.require_one_load(self.body.drive, self.load.mass)
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -1,7 +1,12 @@
+from dataclasses import replace
+
 import pytest
 
 from facegear.design import body as design
 from facegear.design.teeth import constant_diametral_pitch, root_stress
+from facegear.maps.lobes import StableRangeError
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.paths import point_contact
 from facegear.mechanics.plate import Body
 from facegear.support.parameters import MeshLoad, rad_per_s, watt
 from tests.comparing import agree
@@ -36,6 +41,27 @@ def test_lobe_a_of_figure_4_9():
     assert result.thickness_ratio == pytest.approx(0.0375, abs=1.5e-4)
     assert result.lobe.label == "(1+1)/1"
     assert result.lobes == tuple(sorted(result.lobes, key=lambda lobe: -lobe.thickness_ratio))
+
+
+def test_the_teeth_may_touch_otherwise():
+    """At a point, on its own clock, the lobe of the test above is gone."""
+    cut, speeds = replace(DRIVE, shaper_teeth=26), tuple(rad_per_s([150.0, 300.0]).tolist())
+    contact = Contact(path=point_contact, sharing="mean")
+    with pytest.raises(StableRangeError, match=r"down to h/a = 0\.036 the model is stable"):
+        design.critical_thickness(cut, LOAD, speeds, thickness_range=(0.036, 0.039), contact=contact)
+    with pytest.raises(ValueError, match="ContactPath needs contact along lines"):
+        design.critical_thickness(cut, LOAD, speeds)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flow", [design.design_body, design.design_family])
+def test_design_flow_of_teeth_that_touch_otherwise(flow):
+    cut, speeds = replace(DRIVE, shaper_teeth=26), tuple(rad_per_s([150.0, 300.0]).tolist())
+    needed = design.Requirements(float(watt(600.0)), float(rad_per_s(5000.0)), 1.5, speeds)
+    contact = Contact(path=point_contact, sharing="mean")
+    one = (cut, LOAD, needed) if flow is design.design_body else ([cut], LOAD, needed, [speeds[1]])
+    with pytest.raises(StableRangeError, match=r"down to h/a = 0\.036 the model is stable"):
+        flow(*one, thickness_range=(0.036, 0.039), contact=contact)
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -81,6 +81,15 @@ def test_counted_parameters_take_whole_numbers():
     assert isinstance(replace_parameter(PAIR, "teeth", 24.0).teeth, int)
     with pytest.raises(TypeError, match="pinion_teeth"):
         replace_parameter(TRANSVERSE, "pinion_teeth", 26.5)
+
+
+def test_counted_parameters_that_may_be_left_out_do_too():
+    body = replace(TRANSVERSE.body, drive=replace(TRANSVERSE.body.drive, shaper_teeth=26))
+    model = replace(TRANSVERSE, body=body)
+    assert is_whole_number(model, "shaper_teeth")
+    assert replace_parameter(model, "shaper_teeth", 26.0) == model
+    with pytest.raises(TypeError, match="shaper_teeth must be an integer"):
+        replace_parameter(model, "shaper_teeth", 26.5)
 
 
 def test_present_value():

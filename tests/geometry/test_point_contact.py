@@ -14,7 +14,7 @@ from scipy.optimize import root
 from facegear.geometry import solids
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath
-from facegear.geometry.point_contact import Misalignment, PointPath, UnloadedContact, window
+from facegear.geometry.point_contact import Misalignment, PointPath, UnloadedContact
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
@@ -259,7 +259,7 @@ def test_backlash():
 
 @pytest.mark.parametrize("error", ["offset", "gear_axial", "shaft_angle"])
 def test_windows_end_at_an_edge(error):
-    low, high = window(CASE_ONE, error)
+    low, high = UnloadedContact(CASE_ONE).window(error)
     assert low < 0.0 < high
     for end, step in ((low, -1.0), (high, 1.0)):
         contact = UnloadedContact(CASE_ONE, Misalignment(**{error: end}))
@@ -353,8 +353,20 @@ def test_solids_of_pinion_and_gear_touch_where_contact_says():
         (lambda: UnloadedContact(Drive(26, 130, 3.175e-3)), "shaper_teeth must exceed pinion_teeth=26"),
         (lambda: Misalignment(shaft_angle=0.2), "shaft_angle must be at most 0.1 rad"),
         (lambda: Misalignment(offset=math.nan), "offset"),
-        (lambda: window(CASE_ONE, "pinion_axial"), "error must be one of offset"),
-        (lambda: UnloadedContact(CASE_ONE).gap(0.1), "position must be at least"),
+        (lambda: Misalignment(offset=1e300), "offset must be at most 0.1 m either way"),
+        (lambda: Misalignment(gear_axial=-0.15), r"\(in mm\? gear_axial=-0.00015 would be valid\)"),
+        (lambda: Misalignment(shaft_angle=1.0), r"\(in degrees\? shaft_angle=0.01745 would be valid\)"),
+        (lambda: Misalignment(pivot=206.0), r"pivot must be at most 100 m either way; got 206.0 m \(in mm\?"),
+        (lambda: UnloadedContact(CASE_ONE).window("pinion_axial"), "error must be 'offset' or"),
+        (lambda: UnloadedContact(CASE_ONE).gap(0.1), r"position must lie in \[0.188499, 0.231573\] m"),
+        (lambda: UnloadedContact(CASE_ONE).gap(206.375), r"\(in mm\? 0.206375 m would be valid\)"),
+        (lambda: UnloadedContact(CASE_ONE).hertz(1e-300, 1e11), "force must be at least 1e-12 N"),
+        (lambda: UnloadedContact(CASE_ONE).hertz(1e3, 1e300), "modulus must be at most"),
+        (
+            lambda: UnloadedContact(Drive(12, 14, 3e-3, shaper_teeth=13)),
+            "shaper_teeth=13 leave aligned gears no contact on the flank",
+        ),
+        (lambda: Drive(10, 60, 3e-3, shaper_teeth=11), "shaper_teeth=11 is too few"),
         (lambda: UnloadedContact(CASE_ONE).hertz(0.0, 1e11), "force"),
         (lambda: UnloadedContact(CASE_ONE).marking_band(-1.0), "depth"),
         (lambda: UnloadedContact(CASE_ONE).hertz(1000.0, 110.0), "modulus must be in Pa"),
@@ -371,7 +383,7 @@ def test_solids_of_pinion_and_gear_touch_where_contact_says():
         ),
         (
             lambda: Transverse(Body(CASE_ONE, 0.03), MeshLoad(0.6, 3e-6, 1.0)),
-            r"path=point_contact, sharing=\"mean\"",
+            r"path=fg.point_contact, sharing=\"mean\"",
         ),
     ],
 )
@@ -386,6 +398,11 @@ def test_bad_input(call, message):
         lambda: UnloadedContact(3.0),
         lambda: UnloadedContact(CASE_ONE, 1e-5),
         lambda: UnloadedContact(CASE_ONE).curvatures("a"),
+        *(
+            lambda name=name: Misalignment(**{name: None})
+            for name in ("offset", "gear_axial", "pinion_axial")
+        ),
+        lambda: Misalignment(shaft_angle=None),
     ],
 )
 def test_wrong_kinds(call):
@@ -398,6 +415,39 @@ def test_the_part_of_a_misalignment_that_is_named_would_leave_contact():
         with pytest.raises(ValueError, match="would leave some") as caught:
             UnloadedContact(CASE_ONE, Misalignment(**{error: value}))
         share = float(re.search(r"\(([\d.e-]+) of it", str(caught.value))[1])
-        low, high = window(CASE_ONE, error)
+        low, high = UnloadedContact(CASE_ONE).window(error)
         limit = high if value > 0.0 else low
         assert share == pytest.approx(limit / value, rel=0.06, abs=0.001)
+        # To be followed: what is named is rounded downwards.
+        UnloadedContact(CASE_ONE, Misalignment(**{error: share * value}))
+
+
+@pytest.mark.parametrize("error", ["offset", "gear_axial", "shaft_angle"])
+def test_just_beyond_a_window_nearly_all_of_the_misalignment_would_do(error):
+    for end in UnloadedContact(CASE_ONE).window(error):
+        with pytest.raises(ValueError, match=r"\(0\.999 of it would leave some\)"):
+            UnloadedContact(CASE_ONE, Misalignment(**{error: end * (1.0 + 1e-5)}))
+
+
+@pytest.mark.parametrize("angle", [60.0, 75.0, 90.0, 100.0, 120.0])
+def test_ends_of_the_face_in_the_coordinate_of_the_shapers_axis(angle):
+    """All of the flank lies between them, and comes to both; at 90° they are L1 and L2."""
+    drive = replace(CASE_ONE, shaper_teeth=28, shaft_angle=math.radians(angle))
+    contact = UnloadedContact(drive)
+    low, high = contact.face
+    assert low < contact.position < high
+    shaper, region = drive.generating, drive.contact_region
+    places = [
+        float(region.position(region.edge_angle(edge, roll)))
+        for edge in (shaper.flank_start, shaper.outer_radius)
+        for roll in np.linspace(0.0, shaper.shaper_tip_roll, 41).tolist()
+    ]
+    np.testing.assert_allclose([min(places), max(places)], [low, high], rtol=1e-12)
+    if angle == 90.0:
+        np.testing.assert_allclose([low, high], [drive.inner_limit, drive.outer_limit], rtol=1e-12)
+    assert np.isfinite(contact.gap([low, high])).all()
+    for beyond in (low - 1e-6, high + 1e-6):
+        with pytest.raises(
+            ValueError, match="the coordinates u along the shaper's axis where the flank has points"
+        ):
+            contact.gap(beyond)

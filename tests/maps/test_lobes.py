@@ -1,13 +1,16 @@
 import math
+import pickle
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from facegear.floquet.labels import Combination
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
-from facegear.maps.lobes import highest_lobes
+from facegear.maps.lobes import StableRangeError, UnstableTopError, highest_lobes
+from facegear.maps.tracing import Tongue
 
 # --- tips of lobes against a closed form ---------------------------------------------------------------------------
 
@@ -91,3 +94,17 @@ def test_speeds_must_be_named():
         highest_lobes(model_at, 0.7, [], (5e-4, 0.06))
     with pytest.raises(ValueError, match="speeds must ascend"):
         highest_lobes(model_at, 0.7, [0.7], (5e-4, 0.06))
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        StableRangeError(0.03, (10.0, 20.0)),
+        UnstableTopError(Tongue(2.0, 3.0, 2.5, 0.1, Combination(1, 1, "sum", 1)), 0.06),
+    ],
+)
+def test_what_is_refused_in_another_process_arrives_here(error):
+    arrived = pickle.loads(pickle.dumps(error))
+    assert type(arrived) is type(error)
+    assert str(arrived) == str(error)
+    assert arrived.thickness_ratio == error.thickness_ratio

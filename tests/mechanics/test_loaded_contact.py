@@ -14,6 +14,7 @@ from facegear.geometry.point_contact import Misalignment, UnloadedContact
 from facegear.mechanics.compliance import Lines
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.slices import Slices
+from facegear.support.parameters import keep
 from tests.independent.loaded_contact import LoadedContact as Independent
 
 MODULE = 3.175e-3
@@ -52,8 +53,13 @@ def test_areas_under_the_gap_by_quadrature():
         pytest.param(replace(CUT, shaft_angle=math.radians(105.0)), 3, marks=pytest.mark.slow),
         pytest.param(Drive(20, 100, MODULE, shaper_teeth=21), 2, marks=pytest.mark.slow),
         (Drive(52, 260, 3e-3, shaper_teeth=55), 1),
+        (Drive(17, 85, 3e-3, shaper_teeth=18), 3),
+        (Drive(26, 130, MODULE, shaper_teeth=115), 3),
+        pytest.param(
+            Drive(20, 100, MODULE, shaper_teeth=21, shaft_angle=math.radians(91.0)), 3, marks=pytest.mark.slow
+        ),
     ],
-    ids=["Case I", "cut again at 105°", "few teeth", "many teeth"],
+    ids=["Case I", "cut again at 105°", "few", "many teeth", "fewer", "large shaper", "cut again at the end"],
 )
 def test_lines_lie_on_both_flanks_and_end_at_an_edge(drive, kinks):
     slices = Slices(drive)
@@ -107,6 +113,14 @@ def test_a_line_of_which_nothing_is_left_carries_nothing(law):
         assert np.count_nonzero(force) == 0
 
 
+@pytest.mark.parametrize("angle", [60.0, 75.0, 100.0, 120.0])
+def test_pressure_over_the_face_is_the_force(angle):
+    contact = LoadedContact(replace(CUT, shaper_teeth=28, shaft_angle=math.radians(angle)), 100.0)
+    u = np.linspace(*contact.slices.contact.face, 4001)
+    carried = np.trapezoid(contact.pressure(0.3, u), u, axis=-1)
+    np.testing.assert_allclose(carried, contact.pairs(0.3).force, atol=2e-4 * contact.force)
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_stiffness_is_the_slope_of_force_against_approach(law):
     """At one instant: a little more torque, a little more approach."""
@@ -132,7 +146,8 @@ def test_small_loads_leave_the_contact_ratio_of_the_point_like_the_root_of_the_a
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_load_that_spans_the_face_presses_whole_lines(law):
-    contact = LoadedContact(CUT, 1e7, compliance=law)
+    contact = LoadedContact(CUT, 1.0, compliance=law)
+    keep(contact, torque=1e7)  # more than teeth take
     assert contact.contact_ratio == pytest.approx(contact.slices.sweep, abs=1e-13)
     instants = np.linspace(0.0, 1.0, 20, endpoint=False)
     pairs = contact.pairs(instants)
@@ -158,6 +173,23 @@ def test_contact_ratio_grows_with_the_torque_from_point_to_line(law):
 def test_larger_shapers_press_for_less_time():
     ratios = [LoadedContact(replace(CUT, shaper_teeth=26 + k), 50.0).contact_ratio for k in (1, 2, 3)]
     assert ratios[0] > ratios[1] > ratios[2]
+
+
+@pytest.mark.parametrize("law", [*LAWS, "plate"])
+def test_one_age_and_one_slice_are_as_good_as_many(law):
+    contact = LoadedContact(CUT, 60.0, compliance=law)
+    for one, many in zip(contact.pairs_of_age(0.2), contact.pairs_of_age([0.2]), strict=True):
+        assert float(one) == pytest.approx(many[0], rel=1e-12)
+    assert contact.line_load(1.5, 0.0) == pytest.approx(contact.line_load([1.5], [[0.0]])[0], rel=1e-12)
+    assert contact.line_load([1.5, 1.6], 0.0).shape == (2, 1)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("torque", [1e-13, 2e4])
+def test_the_least_and_the_largest_torque_balance(law, torque):
+    contact = LoadedContact(CUT, torque, compliance=law)
+    force = contact.pairs(np.linspace(0.0, 1.0, 11)).force.sum(axis=0)
+    np.testing.assert_allclose(force, contact.force, rtol=1e-9)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -231,7 +263,20 @@ def test_against_thirty_digits_from_the_definition(law, torque, teeth, offset, c
         (lambda: LoadedContact(CUT, math.nan), "torque must be finite"),
         (lambda: LoadedContact(CUT, 10.0, Misalignment(gear_axial=3e-4)), "outside the outer edge"),
         (lambda: LoadedContact(CUT, 10.0, compliance="beam"), "compliance must be"),
-        (lambda: LoadedContact(CUT, 10.0, correction_factor=1.5), "correction_factor must"),
+        (
+            lambda: LoadedContact(CUT, 10.0, correction_factor=2.0),
+            r"correction_factor must lie in \[1e-06, 1\], got 2.0 \(what gear bodies",
+        ),
+        (lambda: LoadedContact(CUT, 10.0, correction_factor=5e-324), "correction_factor must"),
+        (
+            lambda: LoadedContact(CUT, 1e5),
+            r"torque must lie in \[2.4e-14, 2.4e\+04\] N m .*: teeth would give way by more than a module",
+        ),
+        (lambda: LoadedContact(CUT, 1e308), r"torque must lie in \[2.4e-14, 2.4e\+04\] N m"),
+        (lambda: LoadedContact(CUT, 1e-100), "less is lost in rounding; got 1e-100 N m"),
+        (lambda: LoadedContact(CUT, 10.0).pressure(0.0, [206.375]), "in mm"),
+        (lambda: LoadedContact(CUT, 10.0).pairs_of_age(math.nan), "ages must be finite"),
+        (lambda: LoadedContact(CUT, 10.0).line_load([0.5, 1.0], np.zeros((3, 4))), "s must list slices"),
         (lambda: LoadedContact(CUT, 10.0).mesh_stiffness(math.inf), "fraction must be finite"),
     ],
 )
@@ -247,6 +292,8 @@ def test_bad_input(call, message):
         lambda: LoadedContact(CUT, "10"),
         lambda: LoadedContact(CUT, 10.0, 2e-5),
         lambda: LoadedContact(CUT, 10.0, material=7840.0),
+        lambda: LoadedContact(CUT, 10.0).line_load("a", 0.0),
+        lambda: LoadedContact(CUT, 10.0).pairs_of_age("a"),
     ],
 )
 def test_wrong_kinds(call):

@@ -111,9 +111,61 @@ def test_torque_is_a_parameter():
     np.testing.assert_allclose(chart.values, cells, atol=1e-4)
 
 
+def transverse(path, **given):
+    return fg.Transverse(fg.Body(CUT, 0.03), LOAD, contact=fg.Contact(path=path, **given))
+
+
+def test_what_messages_send_one_to_works():
+    for made in (
+        transverse(fg.point_contact, sharing="mean"),
+        transverse(fg.loaded_contact(500.0), rate="total"),
+        transverse(fg.loaded_contact(500.0, compliance="pair")),
+        # At small loads rigid teeth take up their loads little by little.
+        transverse(fg.loaded_contact(30.0, compliance="pair"), rate="total"),
+        replace(
+            transverse(fg.loaded_contact(500.0, compliance="pair"), sharing="mean"),
+            load=replace(LOAD, mass=0.0),
+            contact=fg.Contact(path=fg.loaded_contact(500.0, compliance="pair"), rate="total"),
+        ),
+    ):
+        assert np.isfinite(fg.growth_rate(made.system(60.0)))
+
+
+def test_teeth_of_the_shaper_can_be_swept():
+    model = transverse(fg.point_contact, sharing="mean")
+    speeds = fg.rad_per_s(np.array([300.0, 600.0]))
+    chart = fg.stability_map(model, speeds, "shaper_teeth", [27, 28], jobs=1)
+    other = fg.replace_parameter(model, "body.drive.shaper_teeth", 28)
+    expected = [fg.growth_rate(other.system(float(speed))) for speed in speeds]
+    np.testing.assert_allclose(chart.values[1], expected, atol=1e-4)
+
+
+@pytest.mark.parametrize("fields", [{"misalignment": 3}, {"material": 3}, {"correction_factor": None}])
+def test_wrong_kinds(fields):
+    with pytest.raises(TypeError, match=f"{next(iter(fields))} must be"):
+        fg.loaded_contact(1.0, **fields)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
+        (lambda: transverse(fg.point_contact), 'sharing must be "mean" for one load a pinion on a PointPath'),
+        (
+            lambda: transverse(fg.point_contact, sharing="each"),
+            'sharing must be "mean" for one load a pinion on a PointPath',
+        ),
+        (
+            lambda: transverse(fg.point_contact, sharing="mean", rate="total"),
+            'load.mass must be 0 .*; else take rate "frozen"; got load.mass=1.0',
+        ),
+        (
+            lambda: transverse(fg.loaded_contact(500.0, compliance="pair"), rate="total"),
+            'load.mass must be 0 .*; else take compliance "slice" or "plate", .* or rate "frozen"; got load.mass',
+        ),
+        (
+            lambda: fg.loaded_contact(1.0, correction_factor=2.0),
+            r"correction_factor must lie in \[1e-06, 1\]",
+        ),
         (lambda: fg.loaded_contact(0.0), "torque must be greater than 0"),
         (lambda: fg.loaded_contact(10.0, compliance="beam"), "compliance must be"),
         (

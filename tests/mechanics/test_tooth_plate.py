@@ -284,6 +284,21 @@ def test_bodies_make_the_teeth_softer_as_a_factor():
     assert_allclose(one.transmission_error(TIMES), other.transmission_error(TIMES), rtol=1e-10)
 
 
+@pytest.mark.parametrize("share", [1e-3, 10.0])
+def test_a_softer_material_under_as_much_less_torque_is_in_the_same_contact(share):
+    soft = contact(100.0 * share, material=replace(STEEL, youngs_modulus=share * STEEL.youngs_modulus))
+    assert_allclose(soft.contact_ratio, contact(100.0).contact_ratio, rtol=1e-12)
+    assert_allclose(soft.transmission_error(TIMES), contact(100.0).transmission_error(TIMES), rtol=1e-10)
+
+
+@pytest.mark.parametrize("gear_teeth", [80, 130])
+def test_an_edge_that_does_not_reach_to_the_pitch_circle_leaves_a_plate(gear_teeth):
+    drive = Drive(26, gear_teeth, 3.175e-3, shaper_teeth=28, shaft_angle=np.radians(120.0))
+    plates = LoadedContact(drive, 100.0, compliance="plate")
+    assert plates.slices.contact.contact_ratio < plates.contact_ratio < plates.slices.sweep
+    assert_allclose(plates.pairs(TIMES).force.sum(axis=0), plates.force, rtol=1e-10)
+
+
 @pytest.mark.slow
 def test_more_polynomials_change_little():
     # The error falls as a power of their number: across a line of load the shear jumps.

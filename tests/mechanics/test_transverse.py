@@ -493,7 +493,7 @@ class TestTransverse:
             (
                 {"contact": Contact(sharing="mean", rate="total")},
                 ValueError,
-                'sharing must be "centroid" where',
+                'load.mass must be 0 .* else take sharing "centroid", or rate "frozen"; got load.mass=1.0',
             ),
             ({"contact": Contact(sharing="each")}, ValueError, "sharing must be"),
             ({"force": 1e3}, TypeError, "force must be a DrivingForce or None"),
