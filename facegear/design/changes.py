@@ -148,7 +148,11 @@ def effects_of_changes(
         followed or the model allows no such value. Names in the coordinate ``change_name``.
     """
     followed = integer_at_least("followed", followed, 0)
-    changes = possible_changes(model) if found else ()
+    # What the model refuses in both directions cannot be changed by parts of its value.
+    possible = possible_changes(model) if found else ()
+    changes = [
+        change for change in possible if any(_tried(model, change, s) is not None for s in (_STEP, -_STEP))
+    ]
     slopes = [_slopes(model, change, found, speeds) for change in changes]
     # Where all speeds are unstable no width changes: growth decides.
     order = sorted(range(len(changes)), key=lambda i: (-abs(slopes[i][0]), -abs(slopes[i][1])))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from facegear.mechanics.slices import Slices
 from facegear.mechanics.torsional import mesh_stiffness
@@ -20,6 +21,8 @@ from facegear.support.types import FloatArray
 
 # Newton's rule for the approach: steps, and the error at which it ends, relative.
 _STEPS, _SETTLED = 60, 1e-12
+# Part of the length of a line by which its end may be missed, as by rounding.
+_ROUNDED = 1e-12
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
@@ -85,7 +88,7 @@ class Compliance(ABC):
     def pressure(self, approach: FloatArray, lines: Lines, s: FloatArray) -> FloatArray:
         """Load per length of face on slices of lines, S + (m,) [N/m]; as long as they give way each for itself."""
         inner, outer = lines.inner[..., np.newaxis], lines.outer[..., np.newaxis]
-        within = (inner <= s) & (s <= outer) & (inner < outer)
+        within = between(inner, s, outer)
         over = np.maximum(np.asarray(approach)[..., np.newaxis] - s**2, 0.0)
         return np.asarray(np.where(within, over, 0.0) * self.pair_stiffness / self.slices.drive.face_width)
 
@@ -107,6 +110,12 @@ class Compliance(ABC):
         """Approach [m] as of :meth:`equilibrium`, and stiffness of all pairs there [N/m], both of shape S."""
         settled = self.equilibrium(force, approach, lines)
         return settled, np.asarray(self.force(settled, lines)[1].sum(axis=0))
+
+
+def between(first: FloatArray, s: FloatArray, last: FloatArray) -> NDArray[np.bool_]:
+    """Whether slices lie between two, these included however they are rounded; none does where both are one."""
+    slack = _ROUNDED * (last - first)
+    return np.asarray((first - slack <= s) & (s <= last + slack) & (first < last))
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ the total rate, ẇ + ∇w·v_c - ẇ_m. As the teeth grow stiff the pinion foll
 
 The force between teeth leans from the plane of the disk by the pressure angle: a deflection w along the axis closes the
 teeth by w sin α_c, and of their force the part sin α_c acts along the axis, so that k_z is k_m sin²α_c for each pair.
+That is said at the pitch radius. On a conjugate tooth the pressure angle changes along the face, and k_z with it,
+which is left out.
 
 Pinions may drive the disk from both faces. Mirrored in the plane of the disk, a mesh on the front is one on the back
 that turns the disk the same way, with the contact at the same r and θ: seen from behind the disk turns the other way,
@@ -37,8 +39,8 @@ from facegear.geometry.kinematics import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
 from facegear.mechanics.plate import RadialModes
-from facegear.mechanics.transverse import PinionsOnDisk, Transverse
-from facegear.support.parameters import designed, finite, finite_array, keep, positive, within
+from facegear.mechanics.transverse import MOST_PERIODS, PinionsOnDisk, Transverse
+from facegear.support.parameters import designed, finite_array, keep, positive, within
 from facegear.support.types import FloatArray
 
 FOLLOWED = Contact(rate="total")
@@ -127,7 +129,11 @@ class MeshOscillator(PinionsOnDisk):
                 "mesh_damping must be greater than 0 s, or what rings in stiff teeth never dies away and they do not "
                 f"become rigid ones, got {self.mesh_damping!r}"
             )
-        keep(self, mesh_damping=damping, clocking=finite("clocking", self.clocking))
+        keep(
+            self,
+            mesh_damping=damping,
+            clocking=within("clocking", self.clocking, -MOST_PERIODS, MOST_PERIODS, "mesh periods"),
+        )
         if self.sides is not None:
             keep(self, sides=_checked_sides(self.sides, len(self.pinion_angles)))
         self._require_different_pinions()

@@ -39,7 +39,7 @@ from numpy.polynomial import Chebyshev, chebyshev, legendre
 
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.mechanics.compliance import Compliance, Lines
+from facegear.mechanics.compliance import Compliance, Lines, between
 from facegear.mechanics.slices import Slices
 from facegear.support.parameters import Material
 from facegear.support.types import FloatArray
@@ -643,8 +643,7 @@ class PlateCompliance(Compliance):
         """Load per length of face on slices of lines, S + (m,) [N/m]."""
         state = self._at(approach, lines)[0]
         first, last = (end.reshape(*np.shape(lines.inner), 1) for end in state.ends)
-        within = (first <= s) & (s <= last) & (first < last)
-        return np.where(within, self.overlap(approach, lines, s), 0.0) / self.bedding
+        return np.where(between(first, s, last), self.overlap(approach, lines, s), 0.0) / self.bedding
 
     def overlap(self, approach: FloatArray, lines: Lines, s: FloatArray) -> FloatArray:
         """Find what gap and bending leave of the approach on slices of lines, S + (m,) [m].

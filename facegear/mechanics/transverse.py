@@ -40,6 +40,9 @@ from facegear.mechanics.plate import Body, RadialModes
 from facegear.support.parameters import MeshLoad, designed, finite_array, keep, positive, within
 from facegear.support.types import FloatArray
 
+MOST_PERIODS = 1e3
+"""Phases beyond this are refused: they have lost their digits [mesh periods]."""
+
 
 def nominal_pinion_mass(body: Body) -> float:
     """Mass of the pinion as a solid cylinder, ρπr_p²(L2 - L1), the denominator of (4-19) [kg]."""
@@ -134,6 +137,8 @@ class PinionsOnDisk:
             phases = finite_array("phases", self.phases)
             if phases.shape != angles.shape:
                 raise ValueError(f"phases must list one a pinion, {angles.size}, got {self.phases!r}")
+            for phase in phases.tolist():
+                within("phases", phase, -MOST_PERIODS, MOST_PERIODS, "mesh periods")
             keep(self, phases=tuple(phases.tolist()))
 
     def _require_contact(self) -> None:

@@ -14,7 +14,7 @@ the upper gear it presses with the other flanks of its teeth, whose contact is m
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
 
@@ -50,7 +50,8 @@ _FITS = 1e-6
 class TwoGears:
     """Transverse vibration of two equal face gears that share their pinions, each pinion on the springs of its teeth.
 
-    The driving forces in the planes of the gears are left out.
+    An input drives both gears; an idler takes torque from the upper gear and gives it to the lower; an output is driven
+    by both. Under load all meshes carry the same torque. The driving forces in the planes of the gears are left out.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ class TwoGears:
         if self.gear.clocking != 0.0:
             raise ValueError(f"gear.clocking must be 0 between two gears, got {self.gear.clocking!r}")
         if self.roles is not None:
-            if isinstance(self.roles, str) or len(self.roles) != len(self.gear.pinion_angles):
+            if not isinstance(self.roles, list | tuple) or len(self.roles) != len(self.gear.pinion_angles):
                 raise ValueError(
                     f"roles must list one a pinion, {len(self.gear.pinion_angles)}, got {self.roles!r}"
                 )
@@ -121,11 +122,7 @@ class TwoGears:
         """Modes of the lower and the upper disk, and w_m of each pinion, all along the axis of the lower one."""
         body, pinions = self.gear.body, self.gear.coordinates[-len(self.gear.pinion_angles) :]
         lower, upper = (disk_coordinates(body, part) for part in ("lower face gear", "upper face gear"))
-        named = (
-            replace(coordinate, name=f"{coordinate.part}, {coordinate.name}")
-            for coordinate in (*lower, *upper)
-        )
-        return (*named, *pinions)
+        return (*lower, *upper, *pinions)
 
     @property
     def contact_ratio(self) -> float:

@@ -10,10 +10,14 @@ from facegear.design.changes import effects_of_changes, possible_changes, unstab
 from facegear.drives.drive_file import read_drive_file
 from facegear.floquet.labels import Combination
 from facegear.floquet.multipliers import growth_rate
+from facegear.geometry.drive import Drive
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.paths import loaded_contact
-from facegear.support.parameters import STEEL, rad_per_s, rpm
+from facegear.mechanics.plate import Body
+from facegear.mechanics.two_gears import TwoGears
+from facegear.support.parameters import STEEL, MeshLoad, rad_per_s, rpm
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml").transverse
@@ -133,3 +137,15 @@ def test_a_value_at_the_end_of_its_range_is_differentiated_to_one_side():
     lower = replace(model, load=replace(model.load, damping=0.01 * (1 - 1e-4)))
     ends = [growth_rate(each.system(60.5)) for each in (lower, model)]
     assert float(table["growth_slope"][place]) == pytest.approx((ends[1] - ends[0]) / 1e-4 / 100, rel=1e-6)
+
+
+def test_what_a_model_refuses_in_both_directions_is_left_out():
+    """Pinions between two gears stand at whole halves of the angular pitch, and cannot be moved by parts of it."""
+    body = Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=0, nodal_diameters=1)
+    angles = (0.0, 20 * body.drive.angular_pitch)
+    gear = MeshOscillator(body, MeshLoad(0.7, 3e-6, 1.0), angles, mesh_stiffness=2e8, mesh_damping=1e-5)
+    tongue = Tongue(60.0, 61.0, 60.5, 0.1, Combination(1, 2, "sum", 1))
+    table = effects_of_changes(TwoGears(gear), [tongue], (50.0, 70.0), "", followed=0)
+    found = table["change_name"].values.tolist()
+    assert "mesh stiffness" in found
+    assert "phase of pinion 2" not in found

@@ -139,7 +139,7 @@ def plates(stored):
 
 def flank(stored):
     """Yield the ends of lines, and what presses there."""
-    for torque, place in ((30.0, 40), (300.0, 80)):
+    for torque, place in ((30.0, 40), (300.0, 80), (3.0, 65)):
         one = contact(torque, "slice")
         age = last_line(one) * (place + 1) / (stored.sizes["age"] + 1)
         level = one.approach(age % 1)

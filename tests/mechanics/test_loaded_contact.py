@@ -299,3 +299,14 @@ def test_bad_input(call, message):
 def test_wrong_kinds(call):
     with pytest.raises(TypeError, match="must be"):
         call()
+
+
+def test_the_ends_of_a_line_are_pressed_however_they_are_rounded():
+    """Their load is the limit from inside: it vanished wherever an end came out one digit beyond itself."""
+    contact = LoadedContact(CUT, 1000.0)
+    age = np.linspace(0.2, 0.9, 8) * contact.slices.sweep
+    inner, outer = contact.slices.ends(age)
+    s = np.stack([inner, inner + (outer - inner) * (1.0 - 1e-9), outer * (1.0 + 1e-15), outer], axis=-1)
+    load = contact.line_load(age, s)
+    np.testing.assert_allclose(load[:, 2:], load[:, [1, 1]], rtol=1e-6)
+    assert np.count_nonzero(load[:, 3]) > 0

@@ -156,7 +156,7 @@ def spring(path, pair, phase, driving, upright, sense, angle, number, disk):
 def test_coordinates_say_which_gear_and_which_pinion():
     names = [coordinate.name for coordinate in TwoGears(gear((0, 31))).coordinates]
     assert len(set(names)) == len(names) == 12
-    assert names[0].startswith("lower face gear, ")
+    assert names[0].startswith("lower face gear (")
     assert names[-2:] == ["pinion 1", "pinion 2"]
 
 
@@ -188,6 +188,8 @@ def test_maps_and_tongues_take_it_like_any_model():
             r"roles must list one a pinion, 2, got \('input',\)",
         ),
         (lambda: TwoGears(gear((0, 31)), roles="in"), "roles must list one a pinion, 2, got 'in'"),
+        (lambda: TwoGears(gear((0, 31)), roles={"input", "idler"}), "roles must list one a pinion, 2, got {"),
+        (lambda: TwoGears(gear(), roles=3), "roles must list one a pinion, 1, got 3"),
         (lambda: TwoGears(gear(), roles=("sun",)), "roles must be 'input' or 'idler' or 'output', got 'sun'"),
         (lambda: TwoGears(gear()).system(0.0), "speed must be greater than 0"),
     ],
