@@ -602,3 +602,5 @@ def test_phases_given_take_the_place_of_those_of_the_angles():
         replace(pair, phases=None)
     with pytest.raises(ValueError, match="phases must list one a pinion, 2"):
         replace(pair, phases=(0.0,))
+    with pytest.raises(ValueError, match=r"phases must lie in .*1000.* mesh periods, got 1000000000000000"):
+        replace(pair, phases=(0.0, 1e15))
