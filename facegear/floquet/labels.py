@@ -33,6 +33,8 @@ Kind = Literal["sum", "difference", "mean"]
 _INSTANTS = 8
 # Distance from exact resonance, as a part of ω, at which a pair counts half.
 _DETUNING = 0.1
+# Kinetic energies of parts that differ by no more than this are the same, relative.
+_ALIKE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -157,7 +159,7 @@ def moving_parts(system: PeriodicSystem, coordinates: Sequence[Coordinate]) -> t
     -------
     tuple of str
         `Coordinate.part` with the largest kinetic energy, or the name where that is empty, of the motions 1, 2, 3 ...
-        in the order of the numbers of a :class:`Combination`.
+        in the order of the numbers of a :class:`Combination`; parts that have as much of it are joined by "and".
 
     Raises
     ------
@@ -181,7 +183,9 @@ def moving_parts(system: PeriodicSystem, coordinates: Sequence[Coordinate]) -> t
     owners = [coordinate.part or coordinate.name for coordinate in coordinates]
     parts = list(dict.fromkeys(owners))
     shares = np.stack([energies[[owner == part for owner in owners]].sum(axis=0) for part in parts])
-    return tuple(parts[number] for number in shares.argmax(axis=0).tolist())
+    # Parts alike share a motion alike, and which of them came out larger is rounding.
+    most = shares > (1.0 - _ALIKE) * shares.max(axis=0)
+    return tuple(" and ".join(np.array(parts)[chosen].tolist()) for chosen in most.T)
 
 
 @dataclass(frozen=True, eq=False)

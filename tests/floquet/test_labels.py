@@ -149,6 +149,13 @@ def test_coordinates_of_one_part_count_together():
     assert moving_parts(built, names) == ("disk", "pinion", "disk")
 
 
+def test_parts_that_move_alike_are_named_together():
+    """Two like oscillators coupled: in both motions each has half of the energy, whichever rounding prefers."""
+    coupled = PeriodicSystem(np.eye(2), np.zeros((2, 2)), [[2.0, -0.3], [-0.3, 2.0]], (), 1.0)
+    names = [Coordinate(name, "m", name) for name in ("lower", "upper")]
+    assert moving_parts(coupled, names) == ("lower and upper", "lower and upper")
+
+
 def test_tongues_between_the_disk_and_a_pinion_on_its_bearing_are_named_after_both():
     body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03, nodal_circles=0, nodal_diameters=2)
     load = MeshLoad(stiffness=0.7, damping=1e-6, mass=1.0)
