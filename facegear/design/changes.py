@@ -148,12 +148,11 @@ def effects_of_changes(
         followed or the model allows no such value. Names in the coordinate ``change_name``.
     """
     followed = integer_at_least("followed", followed, 0)
-    # What the model refuses in both directions cannot be changed by parts of its value.
     possible = possible_changes(model) if found else ()
-    changes = [
-        change for change in possible if any(_tried(model, change, s) is not None for s in (_STEP, -_STEP))
-    ]
-    slopes = [_slopes(model, change, found, speeds) for change in changes]
+    # What the model refuses in both directions cannot be changed by parts of its value.
+    changed = [(change, sides) for change in possible if (sides := _sides(model, change))]
+    changes = [change for change, _ in changed]
+    slopes = [_slopes(model, sides, found, speeds) for _, sides in changed]
     # Where all speeds are unstable no width changes: growth decides.
     order = sorted(range(len(changes)), key=lambda i: (-abs(slopes[i][0]), -abs(slopes[i][1])))
     after = np.full((len(order), 2), np.nan)
@@ -193,15 +192,20 @@ def effects_of_changes(
     )
 
 
-def _slopes(
-    model: Any, change: Change, found: Sequence[Tongue], speeds: tuple[float, float]
-) -> tuple[float, float]:
-    """Differentiate the unstable width [rad/s] and the largest growth rate [1/s] by the relative change."""
+def _sides(model: Any, change: Change) -> list[tuple[float, Any]]:
+    """Relative changes, one to each side, with the models that they make; none where the model takes neither."""
     sides = [
         (step, changed) for step in (_STEP, -_STEP) if (changed := _tried(model, change, step)) is not None
     ]
     if len(sides) == 1:  # the value stands at the end of its range
         sides.append((0.0, model))
+    return sides
+
+
+def _slopes(
+    model: Any, sides: list[tuple[float, Any]], found: Sequence[Tongue], speeds: tuple[float, float]
+) -> tuple[float, float]:
+    """Differentiate the unstable width [rad/s] and the largest growth rate [1/s] by the relative change."""
     (above, more), (below, less) = sides
 
     def by_change(speed: float) -> float:

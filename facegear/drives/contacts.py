@@ -30,14 +30,8 @@ NAMES: Mapping[str, str] = MappingProxyType(
 _CORRECTION = 0.5
 
 
-def correction_of(drive: Drive, pair_stiffness: float, material: Material) -> float:
-    """c_f at which a pair of teeth has a stiffness k_m [N/m] (7-2).
-
-    Raises
-    ------
-    ValueError
-        If it has none.
-    """
+def _correction_of(drive: Drive, pair_stiffness: float, material: Material) -> float:
+    """c_f at which a pair of teeth has a stiffness k_m [N/m] (7-2)."""
     most = mesh_stiffness(drive, 1.0, material)
     if pair_stiffness > most:
         raise ValueError(
@@ -48,7 +42,7 @@ def correction_of(drive: Drive, pair_stiffness: float, material: Material) -> fl
 
 
 def transverse_contacts(
-    drive: Drive, torque: float, material: Material, correction_factor: float | None = None
+    drive: Drive, torque: float, material: Material, pair_stiffness: float | None = None
 ) -> dict[str, Contact]:
     """Contacts of a drive for the transverse model, the usual one first.
 
@@ -59,20 +53,25 @@ def transverse_contacts(
         At the pinion [N m].
     material : Material
         Of the teeth.
-    correction_factor : float, optional
-        c_f of the stiffness of the teeth (7-2). Default: 0.5.
+    pair_stiffness : float, optional
+        k_m of a pair of teeth under load [N/m]. Default: that of (7-2) with c_f = 0.5.
 
     Returns
     -------
     dict
         By their names in a drive file.
+
+    Raises
+    ------
+    ValueError
+        If teeth under load cannot be so stiff.
     """
     if drive.has_line_contact:
         return {
             "tregold": Contact(),
             "geometric": Contact(contact_ratio=drive.geometric_contact_ratio),
         }
-    factor = _CORRECTION if correction_factor is None else correction_factor
+    factor = _CORRECTION if pair_stiffness is None else _correction_of(drive, pair_stiffness, material)
     return {
         "loaded": Contact(path=loaded_contact(torque, correction_factor=factor, material=material)),
         "unloaded": Contact(path=point_contact, sharing="mean"),

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from facegear.design.body import Requirements
-from facegear.drives.contacts import NAMES, correction_of, in_torsion, transverse_contacts
+from facegear.drives.contacts import NAMES, in_torsion, transverse_contacts
 from facegear.drives.drive_keys import (
     LONGEST_TEXT,
     MOST_PINIONS,
@@ -312,7 +312,7 @@ def _built(found: _Found) -> DriveFile:
     body = _by_model(found, "body", lambda: Body(drive, material=material, **values["body"]))
     pinions = dict(values["pinions"])
     angles, asked = pinions.pop("angles"), pinions.pop("contact_ratio")
-    contacts = _by_model(found, "gearbox", lambda: _contacts(found, drive, material, asked))
+    contacts = _contacts(found, drive, material, asked)
     contact = next(iter(contacts.values()))
     load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
     transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact))
@@ -329,10 +329,8 @@ def _built(found: _Found) -> DriveFile:
 def _contacts(found: _Found, drive: Drive, material: Material, asked: str) -> dict[str, Contact]:
     """Contacts that the teeth can have, under load that of the power; the one that the file asks for first."""
     operation, gearbox = found.values["operation"], found.values["gearbox"]
-    factor = None
-    if gearbox is not None and not drive.has_line_contact:
-        factor = correction_of(drive, gearbox["mesh_stiffness"], material)
-    possible = transverse_contacts(drive, operation["power"] / operation["pinion_speed"], material, factor)
+    torque, stiffness = operation["power"] / operation["pinion_speed"], gearbox and gearbox["mesh_stiffness"]
+    possible = _by_model(found, "gearbox", lambda: transverse_contacts(drive, torque, material, stiffness))
     if asked != USUAL and asked not in possible:
         raise ValueError(
             f"{found.key('pinions', 'contact_ratio')} must be {', '.join([USUAL, *possible])} for a shaper of "

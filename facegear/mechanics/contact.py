@@ -10,7 +10,7 @@ backwards.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
@@ -181,6 +181,11 @@ class Contact:
         """
         passage = _path(self.path, drive, self.contact_ratio).pitch_passage
         return tuple(place.coasting(passage) for place in self.places(drive))
+
+    def placed(self, places: Sequence[LoadPlace], angle: float, phase: float) -> tuple[LoadPlace, ...]:
+        """Places of a pinion at an angle [rad], ahead by a phase [mesh periods], in the sense of `travel`."""
+        there = (place.rotated(angle).shifted(phase) for place in places)
+        return tuple(place.mirrored() for place in there) if self.sense < 0.0 else tuple(there)
 
 
 CENTROID = Contact()

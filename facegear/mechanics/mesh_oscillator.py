@@ -268,7 +268,5 @@ def _mesh(
         pinions[..., pinion.number] = -1.0
         return pinion.face * np.concatenate([disk, pinions], axis=-1)
 
-    places = (place.rotated(pinion.angle).shifted(pinion.phase) for place in contact.places(drive))
-    if contact.travel == "with_disk":
-        places = (place.mirrored() for place in places)
+    places = contact.placed(contact.places(drive), pinion.angle, pinion.phase)
     return tuple((place.shape(vector), place.weight) for place in places)

@@ -204,7 +204,5 @@ def _shapes(
     if mesh.upper:
         places = tuple(place.mirrored() for place in places)
         phase += 0.5 * (drive.pinion_teeth % 2)
-    places = tuple(place.rotated(mesh.angle).shifted(phase) for place in places)
-    if contact.travel == "with_disk":
-        places = tuple(place.mirrored() for place in places)
-    return tuple((place.shape(vector), place.weight) for place in places)
+    there = contact.placed(places, mesh.angle, phase)
+    return tuple((place.shape(vector), place.weight) for place in there)

@@ -214,7 +214,7 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
         (
             "mass: 1.0",
             "mass: 1.0\n  contact_ratio: loaded",
-            r"pinions.contact_ratio must be usual, tregold, geometric for a shaper of 26 teeth .* 26, got 'loaded'",
+            r"^pinions.contact_ratio must be usual, tregold, geometric for a shaper of 26 teeth .* 26, got 'loaded'",
         ),
         (
             "gear_teeth: 130",

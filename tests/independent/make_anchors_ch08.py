@@ -94,50 +94,50 @@ def parts(rule, states, ratio):
     return states.in_contact.astype(float)
 
 
-def springs_of_pairs(path, rule, place, driving=True, sense=1.0, number=0, disk=0):
-    """Every pair of a mesh at a place (angle, phase); a driven flank is the mirror of a driving one, run backwards."""
-    angle, phase = place
+def clock(path, phase, driving):
+    """Mesh time of a flank against t/T0 and its instants; a driven one runs a driving one's backwards."""
     drive = path.drive
     sweep = drive.entry_rotation - drive.exit_rotation
     passage = (drive.entry_rotation + 0.5 * math.pi / drive.pinion_teeth) / sweep * path.contact_ratio
     turn = 2.0 * passage + 0.5
+
+    def time(x):
+        return x + phase if driving else turn - x - phase
+
+    instants = ((x - phase if driving else turn - phase - x) % 1.0 for x in path.breakpoints)
+    return time, [0.0, *sorted(instants)]
+
+
+def springs_of_pairs(path, rule, place, driving=True, sense=1.0, number=0, disk=0):
+    """Every pair of a mesh at a place (angle, phase); a driven flank is the mirror of a driving one."""
+    angle, phase = place
+    time, instants = clock(path, phase, driving)
     found = []
     for pair in range(path.pairs):
 
-        def states(x):
-            return path.pair_states(x + phase if driving else turn - x - phase)
-
         def position(x, pair=pair):
-            there = states(x)
-            radius = np.where(there.in_contact[pair], there.radius[pair], drive.outer_radius)
+            there = path.pair_states(time(x))
+            radius = np.where(there.in_contact[pair], there.radius[pair], path.drive.outer_radius)
             return radius, sense * there.angle[pair] + angle
 
         def weight(x, pair=pair):
-            return parts(rule, states(x), path.contact_ratio)[pair]
+            return parts(rule, path.pair_states(time(x)), path.contact_ratio)[pair]
 
-        instants = [(x - phase if driving else turn - phase - x) % 1.0 for x in path.breakpoints]
-        found.append(Spring(Pinion(position, [0.0, *sorted(instants)]), weight, number, disk))
+        found.append(Spring(Pinion(position, instants), weight, number, disk))
     return found
 
 
 def one_spring(path, place, driving=True, sense=1.0, number=0, disk=0):
     """Teeth of one mesh as one spring at the centroid of its lines."""
     angle, phase = place
-    drive = path.drive
-    sweep = drive.entry_rotation - drive.exit_rotation
-    passage = (drive.entry_rotation + 0.5 * math.pi / drive.pinion_teeth) / sweep * path.contact_ratio
-    turn = 2.0 * passage + 0.5
+    time, instants = clock(path, phase, driving)
 
     def position(x):
-        there = path.centroid(x + phase if driving else turn - x - phase)
+        there = path.centroid(time(x))
         return there.radius, sense * there.angle + angle
 
-    instants = [(x - phase if driving else turn - phase - x) % 1.0 for x in path.breakpoints]
     return Spring(
-        Pinion(position, [0.0, *sorted(instants)]),
-        lambda x: np.full(np.shape(x), path.contact_ratio),
-        number,
-        disk,
+        Pinion(position, instants), lambda x: np.full(np.shape(x), path.contact_ratio), number, disk
     )
 
 
