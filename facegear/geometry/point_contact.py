@@ -17,20 +17,22 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 from scipy.special import elliprd, elliprf
 
-from facegear.geometry.contact_lines import ContactRegion
+from facegear.geometry.contact_lines import ContactRegion, root
 from facegear.geometry.drive import Drive, involute
 from facegear.geometry.kinematics import PairStates, TimedPairs
 from facegear.support.parameters import finite, finite_array, keep, nonnegative, one_of, positive, within
 from facegear.support.types import FloatArray
 
-# Local pressure angles between which contact is looked for [rad], and into how many parts.
-_STEEPEST, _PARTS = 1.5, 600
+# Local pressure angles between which contact is looked for [rad].
+_ANGLES = np.linspace(-1.5, 1.5, 601)
+_ANGLES.setflags(write=False)
 # Halvings of a misalignment that leaves no contact, to say how much of it would, and digits of that.
 _HALVINGS, _DIGITS = 20, 3
 # Errors of alignment that are taken for such: [m], [rad], and how far off a pivot may be [m].
@@ -39,6 +41,18 @@ _LONGEST, _WIDEST, _FARTHEST = 0.1, 0.1, 100.0
 _ROUNDING = 1e-9
 # Forces [N] and moduli [Pa] for which Hertz' ellipse is computed: below and above it is no size that a number can have.
 _LEAST_FORCE, _LARGEST_MODULUS = 1e-12, 1e15
+
+
+# Components x, y, z, numbers or arrays of one shape: stacked, they would take longer to stack than to work with.
+Vector = tuple[Any, Any, Any]
+
+
+class _Change(NamedTuple):
+    """Angles between which normals begin or cease to touch the pinion's base circle."""
+
+    first: float
+    last: float
+    rises: bool
 
 
 @dataclass(frozen=True)
@@ -212,21 +226,27 @@ class UnloadedContact:
     @cached_property
     def _rising(self) -> tuple[float, ...]:
         """Those of the roots where flanks touch from outside."""
-        return tuple(q for q in self.roots if self.residual(q + 1e-6) > self.residual(q - 1e-6))
+        return tuple(self._root(change) for change in self._changes if change.rises)
 
-    @cached_property
+    @property
     def roots(self) -> tuple[float, ...]:
         """All local pressure angles at which a normal touches the pinion's base circle [rad], ascending.
 
         Where the distance rises through it flanks touch from outside; where it falls they would have to cross.
         """
-        angles = np.linspace(-_STEEPEST, _STEEPEST, _PARTS + 1)
-        values = self.residual(angles)
+        return tuple(self._root(change) for change in self._changes)
+
+    @cached_property
+    def _changes(self) -> tuple[_Change, ...]:
+        values = self.residual(_ANGLES)
         # Not a number where the gear cannot turn a normal square to the pinion: no change of sign.
-        change = np.flatnonzero(values[:-1] * values[1:] <= 0.0)
+        (found,) = np.nonzero(values[:-1] * values[1:] <= 0.0)
         return tuple(
-            float(brentq(self.residual, angles[i], angles[i + 1], xtol=1e-16, rtol=8.9e-16)) for i in change
+            _Change(float(_ANGLES[i]), float(_ANGLES[i + 1]), values[i] < values[i + 1]) for i in found
         )
+
+    def _root(self, change: _Change) -> float:
+        return root(lambda q: float(self.residual(q)), change.first, change.last)
 
     @property
     def position(self) -> float:
@@ -309,23 +329,24 @@ class UnloadedContact:
         return self._shaper.contact_region
 
     @cached_property
-    def _gear_axis(self) -> FloatArray:
+    def _gear_axis(self) -> Vector:
         supplement = math.pi - self.drive.shaft_angle
-        return np.array([0.0, math.sin(supplement), math.cos(supplement)])
+        return 0.0, math.sin(supplement), math.cos(supplement)
 
     @cached_property
-    def _pinion_axis(self) -> tuple[FloatArray, FloatArray]:
+    def _pinion_axis(self) -> tuple[Vector, Vector]:
         """A point of the pinion's axis, and its direction."""
         given, offset = self.misalignment, self.drive.axis_offset
         pivot = offset / math.tan(self.drive.shaft_angle) if given.pivot is None else given.pivot
-        at = np.array([given.offset, -offset, pivot]) - given.gear_axial * self._gear_axis
-        return at, np.array([0.0, math.sin(given.shaft_angle), math.cos(given.shaft_angle)])
+        x, y, z = (-given.gear_axial * part for part in self._gear_axis)
+        at = (given.offset + x, -offset + y, pivot + z)
+        return at, (0.0, math.sin(given.shaft_angle), math.cos(given.shaft_angle))
 
     def turn(self, q: ArrayLike) -> FloatArray:
         """ψ, by which the gear turns from where the shaper made q until the normal is square to the pinion [rad]."""
         normal, axis, k = _normal(q), self._pinion_axis[1], self._gear_axis
-        along = (normal @ k) * float(k @ axis)
-        cosine, sine = normal @ axis - along, _cross(k, normal) @ axis
+        along = _dot(normal, k) * _dot(k, axis)
+        cosine, sine = _dot(normal, axis) - along, _dot(_cross(k, normal), axis)
         # cosine cos ψ + sine sin ψ + along = 0, of which the smaller root; not a number where there is none.
         size, phase = np.hypot(cosine, sine), np.arctan2(sine, cosine)
         with np.errstate(invalid="ignore"):
@@ -334,19 +355,18 @@ class UnloadedContact:
         both = np.where(size > 0.0, (both + math.pi) % (2.0 * math.pi) - math.pi, 0.0)
         return np.asarray(np.where(np.abs(both[0]) < np.abs(both[1]), *both), dtype=float)
 
-    def _line(self, q: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Lines of action at q of shape S: directions n, S + (3,), distances from the pinion's axis, places of θs = 0.
+    def _line(self, q: ArrayLike) -> tuple[Vector, FloatArray, FloatArray]:
+        """Lines of action at q: directions n, distances from the pinion's axis, places of θs = 0.
 
         These are measured along the line from its foot on the pinion's base circle [m]; a roll angle θs adds r_bs θs.
         """
         turn = self.turn(q)
         base = self._shaper.base_radius
-        components = (base * np.sin(q), -base * np.cos(q), self._region.position(np.asarray(q)))
-        start = np.stack(np.broadcast_arrays(*components), axis=-1)
-        start, normal = (_rotated(vector, self._gear_axis, turn) for vector in (start, _normal(q)))
+        made_at = (base * np.sin(q), -base * np.cos(q), self._region.position(np.asarray(q)))
+        (x, y, z), normal = (_rotated(vector, self._gear_axis, turn) for vector in (made_at, _normal(q)))
         at, axis = self._pinion_axis
-        away = start - at
-        return normal, (away * _cross(axis, normal)).sum(axis=-1), (away * normal).sum(axis=-1)
+        away = (x - at[0], y - at[1], z - at[2])
+        return normal, np.asarray(_dot(away, _cross(axis, normal))), np.asarray(_dot(away, normal))
 
     def residual(self, q: ArrayLike) -> FloatArray:
         """A(q), by how much normals pass the pinion's base circle at a distance [m]."""
@@ -395,8 +415,8 @@ class UnloadedContact:
     def direction(self, q: ArrayLike) -> FloatArray:
         """Angle about the pinion's axis of the normals at q, which is its roll angle θ1 but for a rotation [rad]."""
         normal = self._line(q)[0]
-        across = np.cross(self._pinion_axis[1], [1.0, 0.0, 0.0])
-        return np.asarray(np.arctan2(-normal @ across, -normal[..., 0]), dtype=float)
+        across = _cross(self._pinion_axis[1], (1.0, 0.0, 0.0))
+        return np.asarray(np.arctan2(-_dot(normal, across), -normal[0]), dtype=float)
 
     def own_roll(self, q: ArrayLike, roll: ArrayLike) -> FloatArray:
         """Roll angle of the pinion's involute next to the point (q, θs) of the gear's flank [rad]."""
@@ -439,9 +459,9 @@ class UnloadedContact:
         """Second derivatives of the gap in the tangent plane, along the pinion's profile and its axis, (2, 2) [1/m]."""
         q, base = self.pressure_angle, self._shaper.base_radius
         normal, _, start = self._line(q)
-        axis = self._pinion_axis[1]
+        axis = np.array(self._pinion_axis[1])
         profile = np.cross(axis, normal)
-        shaper_axis = _rotated(np.array([0.0, 0.0, 1.0]), self._gear_axis, self.turn(q))
+        shaper_axis = np.array(_rotated((0.0, 0.0, 1.0), self._gear_axis, self.turn(q)))
         shaper_profile = np.cross(shaper_axis, normal)
         # The shaper touches the gear along a line at β to its axis, and is flatter than the gear across it by κ.
         m, supplement = self._shaper.speed_ratio, math.pi - self.drive.shaft_angle
@@ -644,23 +664,29 @@ def _unchecked(drive: Drive, misalignment: Misalignment) -> UnloadedContact:
     return contact
 
 
-def _normal(q: ArrayLike) -> FloatArray:
-    """N(q), unit normals of the flank where the shaper makes it, shape of q and (3,)."""
-    return np.stack([-np.cos(q), -np.sin(q), np.zeros(np.shape(q))], axis=-1)
+def _normal(q: ArrayLike) -> Vector:
+    """N(q), unit normals of the flank where the shaper makes it."""
+    return -np.cos(q), -np.sin(q), 0.0
 
 
-def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Vector product of one vector (3,) and others (..., 3); NumPy's takes longer than all the rest."""
-    x, y, z = np.moveaxis(other, -1, 0)
-    a, b, c = one.tolist()
-    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+def _dot(one: Vector, other: Vector) -> Any:
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
-def _rotated(vectors: FloatArray, axis: FloatArray, angles: FloatArray) -> FloatArray:
-    """Rotate vectors (..., 3) about a unit axis by angles (...) (Rodrigues)."""
-    cosine, sine = np.cos(angles)[..., np.newaxis], np.sin(angles)[..., np.newaxis]
-    along = (vectors @ axis)[..., np.newaxis] * axis
-    return np.asarray(vectors * cosine + _cross(axis, vectors) * sine + along * (1.0 - cosine), dtype=float)
+def _cross(one: Vector, other: Vector) -> Vector:
+    (a, b, c), (x, y, z) = one, other
+    return b * z - c * y, c * x - a * z, a * y - b * x
+
+
+def _rotated(vector: Vector, axis: Vector, angle: FloatArray) -> Vector:
+    """Rotate a vector about a unit axis (Rodrigues)."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    along = _dot(vector, axis) * (1.0 - cosine)
+    x, y, z = (
+        own * cosine + square * sine + along * part
+        for own, square, part in zip(vector, _cross(axis, vector), axis, strict=True)
+    )
+    return x, y, z
 
 
 def _where_positive(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:

@@ -7,6 +7,9 @@ close together they are interpolated along speed as well, on a sheet (:mod:`face
 computed at few speeds, and in each group of columns one is computed all the same, to see whether the sheet is right.
 What is left are eigenvalues. Columns are shared out over processes or threads by joblib.
 
+Where the parameter counts something, or moves the instants at which the load begins and ends, a map is made of rows
+instead: at one value, transition matrices are smooth functions of speed alone.
+
 What falls between the columns of a map, tongues narrower than their distance, is found by
 :func:`facegear.maps.tracing.tongues`.
 """
@@ -14,7 +17,7 @@ What falls between the columns of a map, tongues narrower than their distance, i
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
@@ -55,7 +58,8 @@ from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.sheets import SHEET_TOLERANCE, Sheet, is_interpolated, samples, windows
 from facegear.floquet.stepping import Family
-from facegear.maps.parallel import Workers, computed, parts_of
+from facegear.maps.parallel import Task, Workers, computed, parts_of
+from facegear.maps.rows import in_rows, same_layout
 from facegear.support.parameters import finite_array, number_of_workers, rpm
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -132,30 +136,16 @@ def stability_map(
     jobs = number_of_workers("jobs", jobs)
     name = parameter_path(model, parameter)[-1]
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
-    first = [system_at(model, float(speeds[0])) for model in sweep.models]
-    loads = sweep.load_parameters(first)
-    radii = np.empty((values.size, speeds.size))
-    # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
-    prefer: Workers = "processes" if loads is None else "threads"
-    chunks, sheets = _layout(sweep, speeds, loads, first)
-    samples_of = [sample for sheet in sheets for sample in sheet.samples]
-    found: dict[int, FloatArray] = {}
-    for number, result in computed(
-        [*chunks, *samples_of], "stability map", jobs, progress, cache_directory, prefer
-    ):
-        if number < len(chunks):
-            radii[chunks[number].place] = result
-        else:
-            found[number - len(chunks)] = result
-    results = iter([found[number] for number in range(len(samples_of))])
-    cells = [chunk for sheet in sheets for chunk in sheet.chunks([next(results) for _ in sheet.samples])]
-    # On sheets all is linear algebra, of whatever models.
-    for number, result in computed(cells, "cells on sheets", jobs, progress, cache_directory, "threads"):
-        radii[cells[number].place] = result
+    columns = _columns(sweep, speeds)
+
+    def run(tasks: Sequence[Task], description: str, prefer: Workers) -> Iterator[tuple[int, FloatArray]]:
+        return computed(tasks, description, jobs, progress, cache_directory, prefer)
+
+    radii, periods = _by_row(sweep, speeds, run) if columns is None else _by_column(columns, speeds, run)
     error = _error_estimate(sweep, speeds, radii)
 
     return xarray.DataArray(
-        np.log(radii) / _periods(sweep, speeds, np.array([system.period for system in first])),
+        np.log(radii) / periods,
         dims=(name, "speed"),
         coords={
             name: (name, values, {"long_name": ".".join(parameter_path(model, parameter))}),
@@ -341,11 +331,10 @@ class _LoadColumn:
 
 @dataclass(frozen=True, eq=False)
 class _ModelColumn:
-    """A column along which anything may change; `alone` if values share no breakpoints or count something."""
+    """A column along which anything may change."""
 
     sweep: _Sweep
     speed: float
-    alone: bool
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on: of the model's code, what it makes of the first, middle and last value."""
@@ -367,7 +356,7 @@ class _ModelColumn:
     @property
     def smooth(self) -> bool:
         """Whether matrices are smooth functions of them."""
-        return not self.alone
+        return True
 
     @property
     def scale(self) -> FloatArray:
@@ -380,7 +369,7 @@ class _ModelColumn:
 
     def radii(self, method: Method | None, degree: int) -> FloatArray:
         """Spectral radii, (V,), by series of which `degree` is the first that is tried."""
-        if self.alone or _cell_by_cell(self.sweep, self.probed):
+        if _cell_by_cell(self.sweep, self.probed):
             cells = (model.system(self.speed) for model in self.sweep.models)
             return np.array([_spectral_radius(cell, method) for cell in cells])
         return _column_radii(self, method, degree)
@@ -399,15 +388,15 @@ def _column_radii(column: _Column, method: Method | None, degree: int) -> FloatA
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """What all columns of some values have in common; `alone` as in :class:`_ModelColumn`.
+    """What all columns have in common.
 
-    Motions are those of the first, the middle and the last value.
+    Motions are those of the first, the middle and the last value; periods those of all values at the first speed.
     """
 
     sweep: _Sweep
     loads: LoadSweep | None
-    alone: bool
     motions: tuple[FrozenMotions, ...]
+    periods: FloatArray
 
     def degree(self, speed: float) -> int:
         """Estimate of the degree that a series along the parameter will have."""
@@ -437,7 +426,7 @@ class _Columns:
             loads = np.stack([column.mass, column.damping, column.stiffness], axis=1)
             if self.sweep.keeps(loads, speed):
                 return _LoadColumn(self.sweep.probed[0].system(speed), self.loads)
-        return _ModelColumn(self.sweep, speed, self.alone)
+        return _ModelColumn(self.sweep, speed)
 
     @property
     def variable(self) -> FloatArray:
@@ -448,18 +437,15 @@ class _Columns:
     def ends(self) -> tuple[float, float] | None:
         """Ends of the variable, if matrices are interpolated between them."""
         variable = self.variable
-        smooth = not self.alone if self.loads is None else self.loads.smooth
+        smooth = self.loads is None or self.loads.smooth
         return (float(variable.min()), float(variable.max())) if is_interpolated(variable, smooth) else None
-
-
-Place = tuple[slice, slice]
 
 
 @dataclass(frozen=True, eq=False)
 class _Chunk:
     """Neighbouring columns."""
 
-    place: Place
+    place: slice
     columns: _Columns
     speeds: tuple[float, ...]
 
@@ -551,7 +537,6 @@ class _SheetChunk(_Chunk):
 class _Laid:
     """Neighbouring columns, and the samples of the sheet that may be laid through them."""
 
-    rows: slice
     start: int
     speeds: tuple[float, ...]
     columns: _Columns
@@ -559,7 +544,7 @@ class _Laid:
     samples: tuple[_Samples, ...]
 
     @classmethod
-    def between(cls, rows: slice, inside: slice, degree: int, speeds: FloatArray, columns: _Columns) -> _Laid:
+    def between(cls, inside: slice, degree: int, speeds: FloatArray, columns: _Columns) -> _Laid:
         """Prepare a sheet of some degree through the columns `inside`."""
         part, sweep = speeds[inside], columns.sweep
         low, high = 1.0 / float(part[-1]), 1.0 / float(part[0])
@@ -578,69 +563,90 @@ class _Laid:
         window = _Window(low, high, degree, along, method, fastest.scale, tolerance)
         points = 1.0 / ChebyshevSeries.points_of(low, high, degree)
         found = tuple(_Samples(window, columns, speed) for speed in points.tolist())
-        return cls(rows, inside.start, tuple(part.tolist()), columns, window, found)
+        return cls(inside.start, tuple(part.tolist()), columns, window, found)
 
     def chunks(self, found: Sequence[FloatArray]) -> list[_Chunk]:
         """Prepare the columns, on the sheet through what was found if that is smooth."""
         window = self.window
         sheet = Sheet.through(window.low, window.high, found, self.columns.ends, window.tolerance)
         if sheet is None:
-            return _in_chunks(self.rows, self.start, self.speeds, self.columns)
+            return _in_chunks(self.start, self.speeds, self.columns)
         return [
             _SheetChunk(chunk.place, self.columns, chunk.speeds, window, sheet)
-            for chunk in _in_chunks(self.rows, self.start, self.speeds, self.columns, _SHEET_CHUNK)
+            for chunk in _in_chunks(self.start, self.speeds, self.columns, _SHEET_CHUNK)
         ]
 
 
-def _in_chunks(
-    rows: slice, start: int, speeds: Sequence[float], columns: _Columns, size: int = _CHUNK
-) -> list[_Chunk]:
+def _in_chunks(start: int, speeds: Sequence[float], columns: _Columns, size: int = _CHUNK) -> list[_Chunk]:
     """Group columns, the first of which has the number `start`."""
     parts = [tuple(speeds[k : k + size]) for k in range(0, len(speeds), size)]
     return [
-        _Chunk((rows, slice(start + k * size, start + k * size + len(part))), columns, part)
+        _Chunk(slice(start + k * size, start + k * size + len(part)), columns, part)
         for k, part in enumerate(parts)
     ]
 
 
-def _layout(
-    sweep: _Sweep, speeds: FloatArray, loads: FloatArray | None, first: Sequence[PeriodicSystem]
-) -> tuple[list[_Chunk], list[_Laid]]:
-    """Prepare columns of all speeds: those that are computed, and those that may be read off sheets.
+_Run = Callable[[Sequence[Task], str, Workers], Iterator[tuple[int, FloatArray]]]
 
-    Values that are no smooth function of the parameter have sheets of their own, where these pay.
-    """
-    swept = None
-    if loads is not None and sweep.keeps(loads, float(speeds[-1])):
+
+def _columns(sweep: _Sweep, speeds: FloatArray) -> _Columns | None:
+    """Gather what the columns of a map have in common; nothing where it is no smooth function of its parameter."""
+    slowest, fastest = float(speeds[0]), float(speeds[-1])
+    probed = [system_at(model, slowest) for model in sweep.probed]
+    # Building a system may be most of the work of a row: all are built only if these do not tell.
+    if _cell_by_cell(sweep, probed) and sweep.load_parameters(probed) is None:
+        return None
+    first = [system_at(model, slowest) for model in sweep.models]
+    loads, swept = sweep.load_parameters(first), None
+    if loads is not None and sweep.keeps(loads, fastest):
         swept = LoadSweep.of(first[0], LoadColumn(*loads.transpose(1, 0, 2)))
-    alone = swept is None and _cell_by_cell(sweep, first)
-    # Fresh copies: models that have been built need not travel to other processes.
-    whole = [(slice(None), replace(sweep))]
-    parts = whole
-    if alone:
-        parts = [(slice(i, i + 1), replace(sweep, values=(v,))) for i, v in enumerate(sweep.values)]
-    moved = [_motions(part, speeds) for _, part in parts]
-    planned = [windows(_together(motions), speeds) if speeds.size > 1 else [] for motions in moved]
-    if not any(planned):
-        parts, planned = whole, [[]]
-    chunks: list[_Chunk] = []
-    laid: list[_Laid] = []
-    for (rows, part), motions, found in zip(parts, moved, planned, strict=False):
-        columns = _Columns(part, swept, alone, motions)
-        laid += [_Laid.between(rows, inside, degree, speeds, columns) for inside, degree in found]
-        stop = found[-1][0].start if found else speeds.size
-        chunks += _in_chunks(rows, 0, speeds[:stop].tolist(), columns)
-    return chunks, laid
+    elif _cell_by_cell(sweep, first):
+        return None
+    motions = tuple(FrozenMotions.of(model, 1.0 / fastest, 1.0 / slowest) for model in sweep.probed)
+    # A fresh copy: models that have been built need not travel to other processes.
+    return _Columns(replace(sweep), swept, motions, np.array([system.period for system in first]))
 
 
-def _motions(sweep: _Sweep, speeds: FloatArray) -> tuple[FrozenMotions, ...]:
-    """Motions of the first, the middle and the last value."""
-    low, high = 1.0 / float(speeds[-1]), 1.0 / float(speeds[0])
-    return tuple(FrozenMotions.of(model, low, high) for model in sweep.probed)
+def _by_row(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray]:
+    """Spectral radii and periods, (V, S), row by row."""
+    found = np.empty((2, len(sweep.values), speeds.size))
+    rows = in_rows(sweep.model, sweep.path, sweep.values, speeds, sweep.method)
+    places, tasks = zip(*rows, strict=True)
+    for number, result in run(tasks, "stability map", "processes"):
+        found[:, places[number]] = result
+    return found[0], found[1]
 
 
-def _together(motions: Sequence[FrozenMotions]) -> FrozenMotions:
-    return replace(motions[0], exponents=np.concatenate([own.exponents for own in motions]))
+def _by_column(columns: _Columns, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray]:
+    """Spectral radii and periods, (V, S), column by column."""
+    radii = np.empty((len(columns.sweep.values), speeds.size))
+    chunks, sheets = _layout(columns, speeds)
+    samples_of = [sample for sheet in sheets for sample in sheet.samples]
+    found: dict[int, FloatArray] = {}
+    # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
+    prefer: Workers = "processes" if columns.loads is None else "threads"
+    for number, result in run([*chunks, *samples_of], "stability map", prefer):
+        if number < len(chunks):
+            radii[:, chunks[number].place] = result
+        else:
+            found[number - len(chunks)] = result
+    results = iter([found[number] for number in range(len(samples_of))])
+    cells = [chunk for sheet in sheets for chunk in sheet.chunks([next(results) for _ in sheet.samples])]
+    # On sheets all is linear algebra, of whatever models.
+    for number, result in run(cells, "cells on sheets", "threads"):
+        radii[:, cells[number].place] = result
+    return radii, _periods(columns.sweep, speeds, columns.periods)
+
+
+def _layout(columns: _Columns, speeds: FloatArray) -> tuple[list[_Chunk], list[_Laid]]:
+    """Prepare columns of all speeds: those that are computed, and those that may be read off sheets."""
+    found: list[tuple[slice, int]] = []
+    if speeds.size > 1:
+        exponents = np.concatenate([own.exponents for own in columns.motions])
+        found = windows(replace(columns.motions[0], exponents=exponents), speeds)
+    laid = [_Laid.between(inside, degree, speeds, columns) for inside, degree in found]
+    stop = found[-1][0].start if found else speeds.size
+    return _in_chunks(0, speeds[:stop].tolist(), columns), laid
 
 
 def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray:
@@ -658,15 +664,7 @@ def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray
 def _cell_by_cell(sweep: _Sweep, systems: Sequence[PeriodicSystem]) -> bool:
     """Whether a column is no smooth function of its parameter, which counts something or moves breakpoints."""
     few = len(sweep.values) <= len(sweep.probes) or is_whole_number(sweep.model, sweep.parameter)
-    return few or any(not _same_layout(systems[0], other) for other in systems[1:])
-
-
-def _same_layout(one: PeriodicSystem, other: PeriodicSystem) -> bool:
-    return (
-        one.size == other.size
-        and len(one.loads) == len(other.loads)
-        and np.array_equal(one.breakpoints, other.breakpoints)
-    )
+    return few or any(not same_layout(systems[0], other) for other in systems[1:])
 
 
 def _spectral_radius(system: PeriodicSystem, method: Method | None) -> float:
@@ -679,7 +677,7 @@ def _error_estimate(sweep: _Sweep, speeds: FloatArray, radii: FloatArray) -> flo
     cells = {(v, s) for v in (0, last_value) for s in (0, last_speed)} | {(last_value // 2, last_speed // 2)}
     worst = 0.0
     for v, s in sorted(cells):
-        system, radius = sweep.models[v].system(float(speeds[s])), float(radii[v, s])
+        system, radius = sweep.model_at(sweep.values[v]).system(float(speeds[s])), float(radii[v, s])
 
         def error(method: Method, system: PeriodicSystem = system, radius: float = radius) -> float:
             difference = abs(_spectral_radius(system, method.refined()) - radius)

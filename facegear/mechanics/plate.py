@@ -101,8 +101,10 @@ class RadialModes:
         """Evaluate as by a call, beyond the rim too: the functions (4-6) go on there, smooth as on the plate."""
         values = np.empty((self.roots.size, *x.shape))
         for row, (root, factors) in enumerate(zip(self.roots, self.coefficients, strict=True)):
-            bessel = _bessel_functions(self.nodal_diameters, root, x, self.bore_ratio)
-            values[row] = root**derivative * np.tensordot(factors, bessel[derivative], axes=1)
+            plate = (self.nodal_diameters, root, x, self.bore_ratio)
+            # Derivatives take functions of the next order as well: twice the work.
+            bessel = _bessel_functions(*plate)[derivative] if derivative else _four_functions(*plate)
+            values[row] = root**derivative * np.tensordot(factors, bessel, axes=1)
         return values
 
 
@@ -346,24 +348,22 @@ class Body:
         return np.sqrt(self.eigenvalues) / (2 * math.pi)
 
 
+def _four_functions(n: int, root: float, x: FloatArray, bore_ratio: float) -> FloatArray:
+    """J_n, Y_n, I_n e^(-k), K_n e^(kc) at z = kx, shape (4, ...)."""
+    z = root * x
+    # Both exponentials fall away from the edge at which they are one, so nothing overflows.
+    growing, decaying = np.exp(-root * (1.0 - x)), np.exp(-root * (x - bore_ratio))
+    return np.stack(
+        [special.jv(n, z), special.yv(n, z), special.ive(n, z) * growing, special.kve(n, z) * decaying]
+    )
+
+
 def _bessel_functions(
     n: int, root: float, x: FloatArray, bore_ratio: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """J_n, Y_n, I_n e^(-k), K_n e^(kc) at z = kx and their first two derivatives in z, shape (4, ...)."""
+    """Return :func:`_four_functions` and their first two derivatives in z, each of shape (4, ...)."""
     z = root * x
-    # Both exponentials fall away from the edge at which they are one, so nothing overflows.
-    from_rim, from_bore = np.exp(-root * (1.0 - x)), np.exp(-root * (x - bore_ratio))
-
-    def all_four(order: int) -> FloatArray:
-        rows = (
-            special.jv(order, z),
-            special.yv(order, z),
-            special.ive(order, z) * from_rim,
-            special.kve(order, z) * from_bore,
-        )
-        return np.stack(rows)
-
-    value, above = all_four(n), all_four(n + 1)
+    value, above = (_four_functions(order, root, x, bore_ratio) for order in (n, n + 1))
     column = (4,) + (1,) * z.ndim
     # f_n' = (n/z) f_n + s f_(n+1) with s = -1 for J, Y, K and +1 for I (DLMF 10.6.2, 10.29.2), and
     # z² f'' + z f' ± (z² ∓ n²) f = 0 with the upper signs for J, Y (DLMF 10.2.1, 10.25.1).

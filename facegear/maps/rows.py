@@ -1,0 +1,147 @@
+"""Rows of a map: spectral radii along speed at one value of a parameter.
+
+At one value, transition matrices are smooth functions of the slowness 1/speed, however roughly they depend on the
+parameter: on a number of teeth, or on a torque that moves the instants at which pairs begin and end. Matrices of many
+speeds are computed together, and interpolated along slowness where that takes fewer of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from facegear.floquet.columns import interpolated_spectral_radii
+from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.models import Model, replace_at
+from facegear.floquet.multiplier_curves import FrozenMotions
+from facegear.floquet.multipliers import Method, rounding_error, transition_matrices, with_method
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.sheets import SHEET_TOLERANCE, windows
+from facegear.floquet.stepping import Family
+from facegear.maps.parallel import parts_of
+from facegear.support.types import FloatArray
+
+# Speeds whose matrices are computed together: beyond these, periods differ too much for a common step.
+_TOGETHER = 16
+# Cells that are computed, and kept on disk, together, if a row has fewer.
+_CELLS = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Neighbouring rows.
+
+    Attributes
+    ----------
+    model : Model
+    path : tuple of str
+        Fields that lead to the parameter.
+    values : tuple of float
+        Of the parameter, one a row.
+    speeds : tuple of float
+        Ascending [rad/s].
+    method : Method, optional
+        See :func:`facegear.floquet.multipliers.with_method` if left out.
+    """
+
+    model: Model
+    path: tuple[str, ...]
+    values: tuple[float, ...]
+    speeds: tuple[float, ...]
+    method: Method | None
+
+    def content(self) -> Iterator[Any]:
+        """Everything the result depends on: of the models' code, what it makes of the first value."""
+        yield (
+            repr(self.model),
+            repr(self.path),
+            np.array(self.values),
+            np.array(self.speeds),
+            repr(self.method),
+        )
+        first = replace_at(self.model, self.path, self.values[0])
+        for speed in (self.speeds[0], self.speeds[-1]):
+            yield from parts_of(first.system(speed))
+
+    def compute(self) -> FloatArray:
+        """Largest moduli of the multipliers [-], and periods [s], shape (2, rows, speeds)."""
+        speeds = np.array(self.speeds)
+        # Models are built here, in the process that uses them: what they prepare may be most of the work.
+        rows = (_row(replace_at(self.model, self.path, value), speeds, self.method) for value in self.values)
+        return np.stack(list(rows), axis=1)
+
+
+def same_layout(one: PeriodicSystem, other: PeriodicSystem) -> bool:
+    """Whether two systems have the same size, number of loads and breakpoints."""
+    return (
+        one.size == other.size
+        and len(one.loads) == len(other.loads)
+        and np.array_equal(one.breakpoints, other.breakpoints)
+    )
+
+
+def in_rows(
+    model: Model, path: tuple[str, ...], values: Sequence[float], speeds: FloatArray, method: Method | None
+) -> Iterator[tuple[slice, Rows]]:
+    """Group values, each group with its place among them."""
+    size = max(1, _CELLS // speeds.size)
+    for start in range(0, len(values), size):
+        part = tuple(values[start : start + size])
+        yield slice(start, start + len(part)), Rows(model, path, part, tuple(speeds.tolist()), method)
+
+
+def _row(model: Model, speeds: FloatArray, method: Method | None) -> FloatArray:
+    """Spectral radii and periods of a model at speeds (S,), shape (2, S)."""
+    slowness = 1.0 / speeds
+    periods = _periods(model, speeds)
+    planned = windows(FrozenMotions.of(model, slowness[-1], slowness[0]), speeds) if speeds.size > 1 else []
+    alone = slice(0, planned[-1][0].start if planned else speeds.size)
+    # Coordinates in which entries are of comparable size, the same for all that is interpolated.
+    scale = Family([model.system(float(speeds[-1]))]).scale
+    inverse = np.linalg.inv(scale)
+
+    def radii(chosen: Method) -> FloatArray:
+        def matrices(x: FloatArray) -> FloatArray:
+            return np.asarray(scale @ _matrices(model, x, chosen) @ inverse, dtype=float)
+
+        found = np.empty(speeds.size)
+        for inside, degree in planned:
+            # No series resolves rounding, which is largest in the longest period.
+            slowest = Family([model.system(float(speeds[inside.start]))])
+            rounding = rounding_error(np.eye(2 * slowest.size), slowest, chosen)
+            tolerance = max(SHEET_TOLERANCE, 4.0 * rounding)
+            found[inside] = interpolated_spectral_radii(matrices, slowness[inside], tolerance, degree)
+        if alone.stop:
+            found[alone] = spectral_radii(matrices(slowness[alone]))
+        return found
+
+    return np.stack([with_method(method, radii), periods])
+
+
+def _periods(model: Model, speeds: FloatArray) -> FloatArray:
+    """T0 [s], (S,)."""
+    few = speeds[[0, speeds.size // 2, -1]]
+    turned = np.array([model.system(speed).period for speed in few.tolist()]) * few
+    if np.ptp(turned) <= 1e-12 * turned[0]:
+        return np.asarray(turned[0] / speeds)
+    # Not in inverse proportion to speed.
+    return np.array([model.system(speed).period for speed in speeds.tolist()])
+
+
+def _matrices(model: Model, slowness: FloatArray, method: Method) -> FloatArray:
+    """Transition matrices at values of slowness (K,), shape (K, d, d)."""
+    systems = [model.system(speed) for speed in (1.0 / slowness).tolist()]
+    return np.concatenate([transition_matrices(group, method) for group in _alike(systems)])
+
+
+def _alike(systems: list[PeriodicSystem]) -> Iterator[list[PeriodicSystem]]:
+    """Neighbours with the same loads and breakpoints, few enough to be of similar periods."""
+    start = 0
+    for number, system in enumerate(systems):
+        if number - start == _TOGETHER or not same_layout(systems[start], system):
+            yield systems[start:number]
+            start = number
+    yield systems[start:]
