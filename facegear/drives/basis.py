@@ -17,12 +17,12 @@ from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.edge_stiffness import complete_harmonics
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, Body
-from facegear.mechanics.transverse import Transverse
+from facegear.mechanics.transverse import PinionsOnDisk
 from facegear.support.parameters import integer_at_least, within
 from facegear.support.types import FloatArray
 
 
-def with_basis(model: Transverse, nodal_circles: int, nodal_diameters: int) -> Transverse:
+def with_basis(model: PinionsOnDisk, nodal_circles: int, nodal_diameters: int) -> PinionsOnDisk:
     """Return the same drive in another basis.
 
     Bearing stiffness and damping keep their values in N/m and N s/m: μ (4-17) is measured by a stiffness of the disk
@@ -30,13 +30,13 @@ def with_basis(model: Transverse, nodal_circles: int, nodal_diameters: int) -> T
 
     Parameters
     ----------
-    model : Transverse
+    model : PinionsOnDisk
     nodal_circles, nodal_diameters : int
         M and N of the new basis.
 
     Returns
     -------
-    Transverse
+    PinionsOnDisk
 
     Raises
     ------
@@ -115,7 +115,7 @@ class SettledTongues:
 
     Attributes
     ----------
-    model : Transverse
+    model : PinionsOnDisk
         The drive in that basis.
     speeds : tuple of float
         Lowest and highest speed [rad/s].
@@ -125,7 +125,7 @@ class SettledTongues:
         Whether the last two agree on whether there is a tongue, and within the tolerance on where.
     """
 
-    model: Transverse
+    model: PinionsOnDisk
     speeds: tuple[float, float]
     steps: tuple[BasisStep, ...]
     settled: bool
@@ -142,7 +142,7 @@ class SettledTongues:
 
 
 def settled_tongues(
-    model: Transverse, speeds: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
+    model: PinionsOnDisk, speeds: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
 ) -> SettledTongues:
     """Tongues of a drive in a basis that is raised until they stand still.
 
@@ -151,7 +151,7 @@ def settled_tongues(
 
     Parameters
     ----------
-    model : Transverse
+    model : PinionsOnDisk
         Drive in the first basis.
     speeds : tuple of float
         Lowest and highest speed [rad/s].

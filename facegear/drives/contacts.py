@@ -26,8 +26,8 @@ NAMES: Mapping[str, str] = MappingProxyType(
 )
 """What a report calls the contacts of a drive file."""
 
-# Correction c_f of the stiffness of the teeth where nothing is known (table 7.1).
-_CORRECTION = 0.5
+USUAL_CORRECTION = 0.5
+"""Correction c_f of the stiffness of the teeth where nothing is known (table 7.1) [-]."""
 
 
 def _correction_of(drive: Drive, pair_stiffness: float, material: Material) -> float:
@@ -71,7 +71,7 @@ def transverse_contacts(
             "tregold": Contact(),
             "geometric": Contact(contact_ratio=drive.geometric_contact_ratio),
         }
-    factor = _CORRECTION if pair_stiffness is None else _correction_of(drive, pair_stiffness, material)
+    factor = USUAL_CORRECTION if pair_stiffness is None else _correction_of(drive, pair_stiffness, material)
     return {
         "loaded": Contact(path=loaded_contact(torque, correction_factor=factor, material=material)),
         "unloaded": Contact(path=point_contact, sharing="mean"),

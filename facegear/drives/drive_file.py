@@ -11,11 +11,12 @@ import math
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from facegear.design.body import Requirements
-from facegear.drives.contacts import NAMES, in_torsion, transverse_contacts
+from facegear.drives.contacts import NAMES, USUAL_CORRECTION, in_torsion, transverse_contacts
 from facegear.drives.drive_keys import (
     LONGEST_TEXT,
     MOST_PINIONS,
@@ -25,13 +26,14 @@ from facegear.drives.drive_keys import (
     WIDEST_SPEED_RATIO,
     Key,
 )
+from facegear.drives.flexible_teeth import FlexibleTeeth
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
 from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
-from facegear.mechanics.torsional import Gearbox, Torsional
-from facegear.mechanics.transverse import Transverse
+from facegear.mechanics.torsional import Gearbox, Torsional, mesh_stiffness
+from facegear.mechanics.transverse import PinionsOnDisk, Transverse
 from facegear.support.parameters import Material, MeshLoad, integer_at_least, rpm, within
 from facegear.support.plain_yaml import read_plain_yaml
 
@@ -57,21 +59,24 @@ class DriveFile:
     ----------
     name : str
         Name of the drive.
-    transverse : Transverse
-        Drive, body, mesh load and pinions.
+    transverse : Transverse or MeshOscillator
+        Drive, body, mesh load and pinions, with rigid teeth or with `teeth`.
     requirements : Requirements
         Power [W], pinion speed [rad/s], safety factor, operating speeds of the face gear [rad/s].
     contacts : mapping of str to Contact
         Those that the teeth can have, by the names that a report gives them, that of `transverse` first.
     torsional : Torsional or None
         Shafts and inertias, if the file has a gearbox.
+    teeth : FlexibleTeeth or None
+        None for rigid ones.
     """
 
     name: str
-    transverse: Transverse
+    transverse: PinionsOnDisk
     requirements: Requirements
     contacts: Mapping[str, Contact]
     torsional: Torsional | None = None
+    teeth: FlexibleTeeth | None = None
 
     @property
     def drive(self) -> Drive:
@@ -243,7 +248,7 @@ def _value(path: str, key: Key, value: Any) -> Any:
             raise ValueError(f"{path} must be {key.valid}, got {_shown(value)}")
         return value
     if key.kind == "numbers":
-        if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_PINIONS:
+        if not isinstance(value, list | tuple) or not key.fewest <= len(value) <= MOST_PINIONS:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
         return tuple(key.to_si(_number(f"{path}[{i}]", key, entry)) for i, entry in enumerate(value))
     if key.kind == "integer":
@@ -308,14 +313,23 @@ def _built(found: _Found) -> DriveFile:
     drive = _by_model(found, "gears", lambda: Drive(**gears))
     material = _by_model(found, "material", lambda: Material(**values["material"]))
     _check_bore(drive, values["body"]["bore_radius"])
-    _check_angles(drive, values["pinions"]["angles"])
+    _check_angles(drive, values["pinions"]["angles"], values["teeth"])
     body = _by_model(found, "body", lambda: Body(drive, material=material, **values["body"]))
     pinions = dict(values["pinions"])
     angles, asked = pinions.pop("angles"), pinions.pop("contact_ratio")
-    contacts = _contacts(found, drive, material, asked)
+    stiffness = _pair_stiffness(found, drive, material)
+    contacts = _contacts(found, drive, material, stiffness, asked)
     contact = next(iter(contacts.values()))
     load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
-    transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact))
+    teeth = None
+    build: Callable[[], PinionsOnDisk] = partial(Transverse, body, load, angles, contact)
+    if values["teeth"] is not None:
+        teeth = _teeth(found, drive, material, stiffness)
+        contacts = _by_model(
+            found, "teeth", lambda: {name: teeth.contact(own, drive) for name, own in contacts.items()}
+        )
+        build = partial(teeth.under, body, load, angles, next(iter(contacts.values())))
+    transverse = _by_model(found, "pinions" if teeth is None else "teeth", build)
     _by_model(found, "body", lambda: transverse.bearing_stiffness)
     requirements = _requirements(found, body)
     torsional = None
@@ -323,13 +337,52 @@ def _built(found: _Found) -> DriveFile:
         torsional = _by_model(
             found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive))
         )
-    return DriveFile(found.name, transverse, requirements, contacts, torsional)
+    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth)
 
 
-def _contacts(found: _Found, drive: Drive, material: Material, asked: str) -> dict[str, Contact]:
+def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[float]:
+    """Face of the gear that each pinion meshes with."""
+    sides = (teeth and teeth["sides"]) or (1.0,) * pinions
+    if len(sides) != pinions or not all(side in (1.0, -1.0) for side in sides):
+        raise ValueError(f"teeth.sides must list 1 or -1 for each of {pinions} pinions, got {list(sides)}")
+    return sides
+
+
+def _teeth(found: _Found, drive: Drive, material: Material, stiffness: float | None) -> FlexibleTeeth:
+    values, gearbox = found.values["teeth"], found.values["gearbox"]
+    if found.values["pinions"]["mass"] == 0.0:
+        raise ValueError("pinions.mass must be greater than 0 for a pinion on flexible teeth to move, got 0")
+    if gearbox and gearbox["mesh_damping"] != values["mesh_damping"]:
+        raise ValueError(
+            f"teeth.tooth_damping_us must be that of gearbox, {found.shown('gearbox', 'mesh_damping')}, got "
+            f"{found.shown('teeth', 'mesh_damping')}"
+        )
+    if stiffness is None:
+        stiffness = mesh_stiffness(drive, USUAL_CORRECTION, material)
+    sides = tuple(int(side) for side in values["sides"])
+    return FlexibleTeeth(stiffness, values["mesh_damping"], values["sharing"], sides, values["clocking"])
+
+
+def _pair_stiffness(found: _Found, drive: Drive, material: Material) -> float | None:
+    """k_m of a tooth pair [N/m] that the file gives, if it does."""
+    gearbox, teeth = found.values["gearbox"], found.values["teeth"]
+    own = teeth["correction_factor"] if teeth else 0.0
+    if gearbox and own:
+        raise ValueError(
+            "teeth.correction_factor must be 0 or left out beside gearbox.mesh_stiffness_N_per_m, which says the same, "
+            f"got {own!r}"
+        )
+    if gearbox:
+        return float(gearbox["mesh_stiffness"])
+    return mesh_stiffness(drive, own, material) if own else None
+
+
+def _contacts(
+    found: _Found, drive: Drive, material: Material, stiffness: float | None, asked: str
+) -> dict[str, Contact]:
     """Contacts that the teeth can have, under load that of the power; the one that the file asks for first."""
-    operation, gearbox = found.values["operation"], found.values["gearbox"]
-    torque, stiffness = operation["power"] / operation["pinion_speed"], gearbox and gearbox["mesh_stiffness"]
+    operation = found.values["operation"]
+    torque = operation["power"] / operation["pinion_speed"]
     possible = _by_model(found, "gearbox", lambda: transverse_contacts(drive, torque, material, stiffness))
     if asked != USUAL and asked not in possible:
         raise ValueError(
@@ -360,12 +413,13 @@ def _check_bore(drive: Drive, bore_radius: float) -> None:
         )
 
 
-def _check_angles(drive: Drive, angles: Sequence[float]) -> None:
-    """Check that no two pinions are in each other's way, in the file's unit."""
-    least = touching_angle(drive)
+def _check_angles(drive: Drive, angles: Sequence[float], teeth: dict[str, Any] | None) -> None:
+    """Check that no two pinions of a face are in each other's way, in the file's unit."""
+    least, faces = touching_angle(drive), _faces(teeth, len(angles))
     for i, angle in enumerate(angles):
         for j in range(i):
-            if abs(math.remainder(angle - angles[j], 2 * math.pi)) < least:
+            apart = abs(math.remainder(angle - angles[j], 2 * math.pi))
+            if faces[i] == faces[j] and apart < least:
                 raise ValueError(
                     f"pinions.angles_deg[{i}] must differ from the other angles, full turns apart, by at least "
                     f"{math.degrees(least):.4g}°, where the tips of these pinions touch, got "

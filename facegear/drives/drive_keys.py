@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
+from facegear.drives.flexible_teeth import CENTROID, SHARING
 from facegear.geometry.drive import FEWEST_TEETH
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
 from facegear.support.parameters import STEEL, WATT_PER_HORSEPOWER
@@ -97,6 +98,11 @@ class Key:
         return OVER_SI[self.unit] / value if self.unit in OVER_SI else value * PER_SI.get(self.unit, 1.0)
 
     @property
+    def fewest(self) -> int:
+        """How many "numbers" there are at least."""
+        return 0 if self.default == () else 1
+
+    @property
     def valid(self) -> str:
         """What is valid, in words."""
         if self.kind == "choice":
@@ -104,7 +110,8 @@ class Key:
         if self.kind == "text":
             return f"text of 1 to {LONGEST_TEXT} characters"
         interval = f"{self.lowest:g} to {self.highest:g}{f' {self.unit}' if self.unit else ''}"
-        what = {"integer": "a whole number", "numbers": f"a list of 1 to {MOST_PINIONS} numbers, each"}
+        numbers = f"a list of {self.fewest} to {MOST_PINIONS} numbers, each"
+        what = {"integer": "a whole number", "numbers": numbers}
         return f"{'0, or ' if self.or_zero else ''}{what.get(self.kind, 'a number')} from {interval}"
 
 
@@ -313,12 +320,67 @@ _GEARBOX = Section(
     required=False,
 )
 
+_TEETH = Section(
+    "Teeth as springs between gear and pinions (chapter 8); without it they are rigid.",
+    (
+        Key(
+            "correction_factor",
+            "$c_f$ (7-2), what bodies and bearings leave of the stiffness of teeth: 0 for what the mesh stiffness of "
+            "`gearbox` makes it, or 0.5",
+            "number",
+            "",
+            1e-6,
+            1.0,
+            or_zero=True,
+            default=0.0,
+        ),
+        Key(
+            "tooth_damping_us",
+            "$c_m/k_m$, mesh damping over mesh stiffness; that of `gearbox` if there is one",
+            "number",
+            "µs",
+            1e-3,
+            1e4,
+            quantity="mesh_damping",
+        ),
+        Key(
+            "sharing",
+            "how tooth pairs share the load: as one at their centre (centroid); each by the length of its contact line "
+            "over that of all (length_share) or over the mean of that (length); equally; at a point, by how the load "
+            "presses them (compliance)",
+            "choice",
+            default=CENTROID,
+            choices=SHARING,
+        ),
+        Key(
+            "sides",
+            "face of the gear that each pinion meshes with, 1 for the front or -1 for the back; none for all the front",
+            "numbers",
+            "",
+            -1.0,
+            1.0,
+            default=(),
+        ),
+        Key(
+            "clocking",
+            "phase by which the teeth of the back face are ahead of those of the front, in mesh periods",
+            "number",
+            "",
+            -1.0,
+            1.0,
+            default=0.0,
+        ),
+    ),
+    required=False,
+)
+
 SECTIONS: Mapping[str, Section] = MappingProxyType(
     {
         "gears": _GEARS,
         "body": _BODY,
         "material": _MATERIAL,
         "pinions": _PINIONS,
+        "teeth": _TEETH,
         "operation": _OPERATION,
         "gearbox": _GEARBOX,
     }
@@ -377,7 +439,7 @@ def _key_schema(key: Key) -> dict[str, Any]:
     if key.kind == "numbers":
         return told | {
             "type": "array",
-            "minItems": 1,
+            "minItems": key.fewest,
             "maxItems": MOST_PINIONS,
             "items": {"type": "number", **ends},
         }

@@ -31,7 +31,7 @@ from facegear.maps.tracing import Tongue
 from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
-from facegear.mechanics.transverse import Transverse, nominal_pinion_mass
+from facegear.mechanics.transverse import PinionsOnDisk, nominal_pinion_mass
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s, rpm
 from facegear.support.types import FloatArray
@@ -82,6 +82,7 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
         Row("bearing stiffness", model.bearing_stiffness, "N/m"),
         Row("pinion mass", model.pinion_mass, "kg"),
         Row("driving force of a pinion", force, "N"),
+        *(() if file.teeth is None else (Row("stiffness of a tooth pair", file.teeth.stiffness, "N/m"),)),
     )
 
 
@@ -106,12 +107,12 @@ def strength(file: DriveFile) -> tuple[Row, ...]:
     )
 
 
-def flutter(body_model: Transverse, duty: Requirements) -> tuple[Row, ...]:
+def flutter(body_model: PinionsOnDisk, duty: Requirements) -> tuple[Row, ...]:
     """Power at which the driving forces alone make the disk flutter (chapter 6), against the power of the drive.
 
     Parameters
     ----------
-    body_model : Transverse
+    body_model : PinionsOnDisk
         Drive in the basis of the report; of its pinions only their angles count.
     duty : Requirements
         Power of each pinion, its speed, range of speed.
@@ -331,7 +332,7 @@ class ThicknessVerdict(NamedTuple):
 
 
 def thickness_verdict(
-    model: Transverse, speeds: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
+    model: PinionsOnDisk, speeds: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
 ) -> ThicknessVerdict:
     """Thickness ratio above which the body is stable in its whole speed range.
 
@@ -339,7 +340,7 @@ def thickness_verdict(
 
     Parameters
     ----------
-    model : Transverse
+    model : PinionsOnDisk
         With the driving force and in the basis of the report.
     speeds : tuple of float
         Lowest and highest speed [rad/s].
@@ -356,7 +357,7 @@ def thickness_verdict(
     lowest, highest = THICKNESS_RATIO_RANGE
     searched = (max(lowest, here / widest), min(highest, here * widest))
 
-    def model_at(thickness_ratio: float) -> Transverse:
+    def model_at(thickness_ratio: float) -> PinionsOnDisk:
         return replace(model, body=replace(model.body, thickness_ratio=thickness_ratio))
 
     low, high = speeds
@@ -373,7 +374,7 @@ def thickness_verdict(
 
 
 def thickness_verdicts(
-    models: Sequence[Transverse], speeds: tuple[float, float], *, jobs: int = -1
+    models: Sequence[PinionsOnDisk], speeds: tuple[float, float], *, jobs: int = -1
 ) -> tuple[ThicknessVerdict, ...]:
     """Critical thickness of several models, in processes, in their order."""
     return tuple(in_processes(thickness_verdict, [(model, speeds) for model in models], jobs))

@@ -18,12 +18,13 @@ import numpy as np
 
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share
 from facegear.drives.drive_file import DriveFile
+from facegear.drives.flexible_teeth import CENTROID
 from facegear.floquet.modes import mean_growth_rate
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
-from facegear.mechanics.transverse import Transverse
+from facegear.mechanics.transverse import PinionsOnDisk
 from facegear.support.parameters import rpm
 
 _FORCES: dict[Following, str] = {"follower": "force follows the rim", "dead": "force keeps its direction"}
@@ -60,7 +61,7 @@ class Case:
         return f"{self.contact}, {_FORCES[self.following]}"
 
 
-def driven(file: DriveFile, following: Following, contact: Contact) -> Transverse:
+def driven(file: DriveFile, following: Following, contact: Contact) -> PinionsOnDisk:
     """Model of a drive file with the force that its power takes, all harmonics of its stress included.
 
     Parameters
@@ -103,7 +104,7 @@ def cases(
 
 
 def _settled(
-    model: Transverse, speeds: tuple[float, float], tolerance: float, most_steps: int
+    model: PinionsOnDisk, speeds: tuple[float, float], tolerance: float, most_steps: int
 ) -> tuple[SettledTongues, float]:
     found = settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps)
     growth = [mean_growth_rate(found.model.system(v)) for v in np.linspace(*speeds, _SPEEDS).tolist()]
@@ -149,9 +150,10 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     """
     low, high = (f"{rpm(speed):.4g}" for speed in file.requirements.speeds)
     duty = file.requirements
+    teeth = "rigid" if file.teeth is None else "flexible"
     where = (
         f"from {low} to {high} rpm under the driving force of {1e-3 * duty.power:.4g} kW a pinion at "
-        f"{rpm(duty.pinion_speed):.4g} rpm of the pinion"
+        f"{rpm(duty.pinion_speed):.4g} rpm of the pinion, on {teeth} teeth"
     )
     shares = {case: case.found.unstable_share for case in computed}
     unstable = [case for case in computed if shares[case] > 0.0]
@@ -238,12 +240,17 @@ def _resonances(found: Sequence[Tongue]) -> str:
 
 
 def _left_out(file: DriveFile) -> str:
-    torsion = "" if file.torsional is not None else "torsion (the file has no section gearbox), "
-    sharing = ", how tooth pairs share the load" if file.drive.has_line_contact else ""
+    missing = ["torsion (the file has no section gearbox)"] * (file.torsional is None)
+    if file.teeth is None:
+        missing += ["the flexibility of the teeth (the file has no section teeth)"]
+        missing += ["how tooth pairs share the load"] * file.drive.has_line_contact
+        missing += ["the inertia of the moving contact (total rate)"]
+    elif file.teeth.sharing == CENTROID:
+        missing += ["the load of each tooth pair by itself"]
+    missing += ["tooth errors and backlash", "the stiffness of the housing"]
     return (
-        f"Not included: {torsion}the flexibility of the teeth{sharing}, the inertia of the moving contact (total "
-        "rate), tooth errors and backlash, the stiffness of the housing. The driving force is the same at all speeds; "
-        "all parameters are taken as exact; speeds outside the range are not looked at."
+        f"Not included: {', '.join(missing)}. The driving force is the same at all speeds; all parameters are taken as "
+        "exact; speeds outside the range are not looked at."
     )
 
 

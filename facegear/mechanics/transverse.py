@@ -12,6 +12,7 @@ opposite senses. `Transverse` follows the printed equations unless its contact s
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -106,7 +107,7 @@ def mirrored(body: Body, shape: PiecewiseChebyshev) -> PiecewiseChebyshev:
 
 
 @dataclass(frozen=True)
-class PinionsOnDisk:
+class PinionsOnDisk(ABC):
     """What every model of a disk under equal pinions is made of; arguments are explained at :class:`Transverse`."""
 
     body: Body
@@ -186,6 +187,15 @@ class PinionsOnDisk:
         if self.phases is not None:
             return tuple(self.phases)
         return tuple(phase_split(self.body.drive, self.pinion_angles).phase.tolist())
+
+    @property
+    @abstractmethod
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """One for each row of the matrices."""
+
+    @abstractmethod
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed Ω2 of the face gear [rad/s]."""
 
     def disk_matrices(self, speed: float) -> tuple[FloatArray, FloatArray]:
         """Damping and stiffness of the disk under the driving forces alone at Ω2 [rad/s], each (n, n)."""

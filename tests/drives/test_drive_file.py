@@ -13,10 +13,13 @@ from hypothesis import strategies as st
 
 from facegear.drives.drive_file import DriveFile, DriveFileError, parse_drive, read_drive_file
 from facegear.drives.drive_keys import NAME, SECTIONS
+from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.loaded_contact import LoadedContact
+from facegear.mechanics.sharing import shared_load
+from facegear.mechanics.torsional import mesh_stiffness
 from facegear.support.parameters import rad_per_s
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -116,6 +119,103 @@ class TestShaperWithMoreTeeth:
             DriveFileError, match=r"gearbox.mesh_stiffness_N_per_m must be at most .*got 1e\+10"
         ):
             parse_drive(stiff)
+
+
+class TestFlexibleTeeth:
+    TEETH = CASE_1 + "\nteeth:\n  tooth_damping_us: 10\n"
+
+    def test_pinions_on_the_springs_of_their_teeth(self):
+        found, rigid = parse_drive(self.TEETH), parse_drive(CASE_1)
+        assert rigid.teeth is None
+        model = found.transverse
+        assert model.mesh_stiffness == mesh_stiffness(found.drive, 0.5, model.body.material)
+        assert model.mesh_damping == pytest.approx(1e-5, rel=1e-15)
+        assert (model.body, model.load, model.pinion_angles) == (
+            rigid.transverse.body,
+            rigid.transverse.load,
+            rigid.transverse.pinion_angles,
+        )
+        assert list(found.contacts) == list(rigid.contacts)
+        assert {contact.rate for contact in found.contacts.values()} == {"total"}
+        softer = parse_drive(self.TEETH + "  correction_factor: 0.25\n").transverse
+        assert softer.mesh_stiffness == pytest.approx(model.mesh_stiffness / 2.0, rel=1e-12)
+
+    def test_stiff_teeth_are_nearly_rigid_ones_with_total_rate(self):
+        found, speed = parse_drive(self.TEETH + "  correction_factor: 1\n"), float(rad_per_s(400.0))
+        rigid = found.transverse.rigid
+        stiff = replace(
+            found.transverse, mesh_stiffness=1e4 * found.transverse.mesh_stiffness, mesh_damping=1e-8
+        )
+        assert growth_rate(stiff.system(speed)) == pytest.approx(growth_rate(rigid.system(speed)), rel=1e-3)
+
+    @pytest.mark.parametrize("rule", ["length_share", "length", "equal"])
+    def test_pairs_share_the_load_by_a_rule(self, rule):
+        found = parse_drive(self.TEETH + f"  sharing: {rule}\n")
+        for contact in found.contacts.values():
+            assert (contact.sharing, contact.path) == ("each", shared_load(rule))
+
+    def test_pairs_share_the_load_as_it_presses_them(self):
+        text = (DRIVES / "localized.yaml").read_text(encoding="utf-8")
+        found = parse_drive(
+            text + "\nteeth:\n  tooth_damping_us: 10\n  sharing: compliance\n  correction_factor: 0.3\n"
+        )
+        contact = found.contacts["contact under load"]
+        assert (contact.sharing, contact.rate) == ("each", "total")
+        assert contact.path.correction_factor == pytest.approx(0.3, rel=1e-12)
+
+    def test_pinions_on_both_faces(self):
+        found = read_drive_file(DRIVES / "both_faces.yaml").transverse
+        assert (found.faces, found.mesh_phases, found.pinion_angles) == ((1, -1), (0.0, 0.5), (0.0, 0.0))
+
+    def test_stiffness_of_a_gearbox_is_that_of_its_teeth(self):
+        found = parse_drive(self.with_gearbox("50"))
+        assert found.transverse.mesh_stiffness == found.torsional.gearbox.mesh_stiffness
+        assert found.transverse.mesh_damping == pytest.approx(
+            found.torsional.gearbox.mesh_damping / found.torsional.gearbox.mesh_stiffness, rel=1e-12
+        )
+
+    @staticmethod
+    def with_gearbox(damping, more=""):
+        text = re.sub(r"mesh_damping_us: \S+", "mesh_damping_us: 50", GEARBOX)
+        return f"{text}\nteeth:\n  tooth_damping_us: {damping}\n{more}"
+
+    @pytest.mark.parametrize(
+        ("text", "told"),
+        [
+            (
+                TEETH + "  sharing: compliance\n",
+                "teeth.sharing must be .* for contact along lines, got 'compliance'",
+            ),
+            (
+                TEETH + "  sides: [1, 1]\n",
+                r"teeth.sides must list 1 or -1 for each of 1 pinions, got \[1.0, 1.0\]",
+            ),
+            (TEETH + "  sides: [0.5]\n", r"teeth.sides must list 1 or -1 .*got \[0.5\]"),
+            (TEETH + "  clocking: 3\n", r"teeth.clocking must lie in \[-1, 1\], got 3"),
+            (
+                TEETH.replace("mass: 1.0", "mass: 0"),
+                "pinions.mass must be greater than 0 for a pinion on flexible",
+            ),
+            (CASE_1 + "\nteeth:\n  sharing: equal\n", "teeth.tooth_damping_us is missing"),
+            (
+                TEETH.replace("mass: 1.0", "mass: 1.0\n  angles_deg: [0, 0]"),
+                r"pinions.angles_deg\[1\] must differ from the other angles",
+            ),
+        ],
+    )
+    def test_what_does_not_go_together_is_refused(self, text, told):
+        with pytest.raises(DriveFileError, match=told):
+            parse_drive(text)
+
+    def test_a_gearbox_says_how_stiff_its_teeth_are(self):
+        with pytest.raises(
+            DriveFileError, match=r"teeth.correction_factor must be 0 or left out beside gearbox"
+        ):
+            parse_drive(self.with_gearbox("50", "  correction_factor: 0.4\n"))
+        with pytest.raises(
+            DriveFileError, match=r"teeth.tooth_damping_us must be that of gearbox, 50 µs, got 40 µs"
+        ):
+            parse_drive(self.with_gearbox("40"))
 
 
 @pytest.mark.parametrize(

@@ -33,8 +33,9 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-def test_there_are_six_examples():
+def test_there_are_seven_examples():
     assert [path.stem for path in EXAMPLES] == [
+        "both_faces",
         "case_1",
         "case_2",
         "example_b",
@@ -130,7 +131,7 @@ def test_the_projects_command_leaves_a_page_beside_the_file(tmp_path):
 
 
 def test_a_mistake_is_told_before_any_work(tmp_path):
-    text = EXAMPLES[0].read_text(encoding="utf-8").replace("module_mm: 3.175", "module_mm: 0.003175")
+    text = (ROOT / "data" / "drives" / "case_1.yaml").read_text(encoding="utf-8").replace("module_mm: 3.175", "module_mm: 0.003175")
     (tmp_path / "wrong.yaml").write_text(text, encoding="utf-8")
     done = called([*COMMAND, "wrong.yaml"], tmp_path)
     assert done.returncode == 1
