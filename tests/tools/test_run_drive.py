@@ -132,7 +132,9 @@ def test_the_projects_command_leaves_a_page_beside_the_file(tmp_path):
 
 def test_a_mistake_is_told_before_any_work(tmp_path):
     text = (ROOT / "data" / "drives" / "case_1.yaml").read_text(encoding="utf-8")
-    (tmp_path / "wrong.yaml").write_text(text.replace("module_mm: 3.175", "module_mm: 0.003175"), encoding="utf-8")
+    (tmp_path / "wrong.yaml").write_text(
+        text.replace("module_mm: 3.175", "module_mm: 0.003175"), encoding="utf-8"
+    )
     done = called([*COMMAND, "wrong.yaml"], tmp_path)
     assert done.returncode == 1
     assert done.stdout == ""
