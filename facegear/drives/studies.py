@@ -1,19 +1,24 @@
-"""What the live explorers of the book explore: a whole drive, Mathieu's and Meissner's equations, a gearbox."""
+"""What the live explorers of the book explore: a drive, classical equations, a gearbox, flexible teeth."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from facegear.drives.explore import Choice, Quantity, Settings, Study
+from facegear.drives.flexible_teeth import CENTROID, FlexibleTeeth
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.classical import Mathieu, Meissner
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
+from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
-from facegear.mechanics.torsional import Torsional
+from facegear.mechanics.sharing import RULES
+from facegear.mechanics.torsional import Torsional, mesh_stiffness
 from facegear.mechanics.transverse import Transverse
+from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, rad_per_s
 
 TREGOLD, TRUE_SWEEP = "Tregold, as printed", "true sweep"
@@ -221,3 +226,112 @@ def gearbox_study(
         "input_damping",
         _speed(highest_speed_rpm),
     )
+
+
+ALONE, FRONT, BOTH, BETWEEN = "one", "two on one face", "one on either face", "one between two gears"
+"""How pinions may stand in :func:`teeth_study`."""
+
+
+def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 1000.0) -> Study:
+    """Pinions on the springs of their teeth: on one face, on both, or between two gears (chapter 8).
+
+    Parameters
+    ----------
+    model : MeshOscillator, optional
+        One pinion, contact along lines: where the controls stand at first. That of Fig. 4.4(a) with the teeth of (7-2)
+        if left out.
+    highest_speed_rpm : float
+        End of the speed axis [rpm of the face gear].
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    ValueError
+        If a value of the model lies outside the range of its control.
+    """
+    if model is None:
+        rigid = cases.FIGURES["4.4a"].model()
+        stiffness = mesh_stiffness(rigid.body.drive, correction_factor=0.5)
+        model = MeshOscillator(rigid.body, rigid.load, mesh_stiffness=stiffness, mesh_damping=1e-5)
+    start, body, load = model, model.body, model.load
+    controls = (
+        Choice("pinions", "pinions", (ALONE, FRONT, BOTH, BETWEEN), ALONE),
+        Quantity(
+            "second_angle",
+            "angle of the 2nd [°]",
+            0.0,
+            355.0,
+            90.0,
+            0.1,
+            _DEGREE,
+            when=("pinions", FRONT, BOTH),
+        ),
+        Quantity(
+            "clocking",
+            "phase of the back face [periods]",
+            0.0,
+            1.0,
+            0.5,
+            0.01,
+            parameter="clocking",
+            when=("pinions", BOTH),
+        ),
+        Choice("sharing", "load sharing", (CENTROID, *RULES), CENTROID),
+        Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), TREGOLD),
+        Quantity(
+            "mesh_stiffness",
+            "stiffness of a tooth pair [N/µm]",
+            5.0,
+            500.0,
+            start.mesh_stiffness * 1e-6,
+            5.0,
+            1e6,
+            parameter="mesh_stiffness",
+        ),
+        Quantity(
+            "mesh_damping",
+            "mesh damping [µs]",
+            0.5,
+            100.0,
+            start.mesh_damping * 1e6,
+            0.5,
+            1e-6,
+            parameter="mesh_damping",
+        ),
+        Quantity(
+            "thickness_ratio",
+            "thickness h/a",
+            0.015,
+            0.09,
+            body.thickness_ratio,
+            0.0005,
+            parameter="body.thickness_ratio",
+        ),
+        Quantity(
+            "stiffness", "bearing stiffness μ", 0.0, 2.0, load.stiffness, 0.05, parameter="load.stiffness"
+        ),
+        Quantity("mass", "pinion mass τ", 0.05, 2.0, load.mass, 0.05, parameter="load.mass"),
+    )
+
+    def build(settings: Settings) -> Model:
+        drive, pinions = body.drive, settings["pinions"]
+        ratio = drive.geometric_contact_ratio if settings["contact_ratio"] == TRUE_SWEEP else None
+        teeth = FlexibleTeeth(
+            settings["mesh_stiffness"],
+            settings["mesh_damping"],
+            settings["sharing"],
+            (1, -1) if pinions == BOTH else (),
+            settings["clocking"] if pinions == BOTH else 0.0,
+        )
+        gear = teeth.under(
+            replace(body, thickness_ratio=settings["thickness_ratio"]),
+            replace(load, stiffness=settings["stiffness"], mass=settings["mass"]),
+            (0.0, settings["second_angle"]) if pinions in (FRONT, BOTH) else (0.0,),
+            teeth.contact(Contact(contact_ratio=ratio), drive),
+        )
+        return TwoGears(gear) if pinions == BETWEEN else gear
+
+    return Study(controls, build, "mesh_stiffness", _speed(highest_speed_rpm))

@@ -185,6 +185,7 @@ STUDIES = {
     "drive": (studies.drive_study(THREE), {}, 60.0),
     "oscillator": (studies.oscillator_study(), {"wave": studies.SQUARE}, 1.9),
     "gearbox": (studies.gearbox_study(), {}, 60.0),
+    "teeth": (studies.teeth_study(), {"pinions": studies.BOTH}, 60.0),
 }
 
 
