@@ -172,6 +172,8 @@ def driving_pair(block: ResonanceBlock, interval: Interval) -> tuple[int, int]:
     turns = np.subtract.outer(block.shifts, block.shifts)
     apart = np.subtract.outer(block.signed_frequencies, block.signed_frequencies)
     paired = turns > 0
+    # An interval may have no end, which times 0 is no number.
+    turns = np.where(paired, turns, 1)
     inside = paired & (apart > lower * turns) & (apart < upper * turns)
     share[~(inside if inside.any() else paired)] = -np.inf
     a, b = np.unravel_index(int(np.argmax(share)), share.shape)

@@ -26,6 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DRIVES = ROOT / "data" / "drives"
 CASE_1 = (DRIVES / "case_1.yaml").read_text(encoding="utf-8")
 GEARBOX = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+BOTH_FACES = (DRIVES / "both_faces.yaml").read_text(encoding="utf-8")
 PATHS = [NAME.name, *SECTIONS, *(f"{n}.{key.name}" for n, s in SECTIONS.items() for key in s.keys)]
 
 
@@ -537,14 +538,14 @@ def any_value_of_any_key_is_valid_or_named(case):
 
 
 @settings(max_examples=60)
-@given(mutated(GEARBOX))
+@given(mutated(GEARBOX) | mutated(BOTH_FACES))
 def test_any_value_of_any_key_is_valid_or_named(case):
     any_value_of_any_key_is_valid_or_named(case)
 
 
 @pytest.mark.slow
 @settings(max_examples=500)
-@given(mutated(GEARBOX))
+@given(mutated(GEARBOX) | mutated(BOTH_FACES))
 def test_any_value_of_any_key_is_valid_or_named_in_very_many_files(case):
     any_value_of_any_key_is_valid_or_named(case)
 

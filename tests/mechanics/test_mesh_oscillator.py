@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 import facegear as fg
+from facegear.floquet.hsu import band_speeds
 from facegear.floquet.models import parameter_names, replace_parameter
 from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.geometry.kinematics import ContactPath, mesh_period
@@ -422,3 +423,16 @@ def test_a_load_for_each_pair_has_no_rigid_counterpart():
 def test_bad_speed(speed):
     with pytest.raises(ValueError, match="speed"):
         model().system(speed)
+
+
+def test_bands_without_an_end_are_named_like_the_others():
+    """Where a tongue is unstable from a speed on, Hsu's band ends at infinity."""
+    whole = replace(BODY, nodal_circles=1, nodal_diameters=3)
+    bands = band_speeds(
+        model(body=whole, load=replace(LOAD, stiffness=1.0)),
+        tuple(fg.rad_per_s(np.array([800.0, 1000.0])).tolist()),
+        order=1,
+        points=21,
+    )
+    assert max(band.upper for band in bands) == math.inf
+    assert "(1+15)/1" in {band.label for band in bands}

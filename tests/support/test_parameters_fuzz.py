@@ -14,12 +14,22 @@ from facegear.mechanics.cases import CASE_1
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.gearboxes import FIGURES
+from facegear.mechanics.mesh_oscillator import MeshOscillator
+from facegear.mechanics.paths import loaded_contact
 from facegear.mechanics.plate import Body
+from facegear.mechanics.sharing import shared_load
 from facegear.mechanics.torsional import Gearbox, Torsional
 from facegear.mechanics.transverse import Transverse
+from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import STEEL, Material, MeshLoad
 
 LOAD = MeshLoad(1.0, 3e-6, 1.0)
+SPRUNG = MeshOscillator(CASE_1, LOAD, (0.0, 1.0), mesh_stiffness=1.6e8, mesh_damping=1e-5)
+FACES = MeshOscillator(
+    CASE_1, LOAD, (0.0, 0.0), sides=(1, -1), clocking=0.5, mesh_stiffness=1.6e8, mesh_damping=1e-5
+)
+PITCH = CASE_1.drive.angular_pitch
+BETWEEN = dataclasses.replace(SPRUNG, pinion_angles=(0.0, 40 * PITCH))
 PARTS = [
     CASE_1.drive,
     CASE_1,
@@ -31,8 +41,17 @@ PARTS = [
     FIGURES["7.12a"].gearbox.in_si,
     FIGURES["7.12a"].model(),
     Requirements(4e5, 500.0, 1.5, (10.0, 100.0)),
+    SPRUNG,
+    FACES,
+    TwoGears(BETWEEN),
+    TwoGears(BETWEEN, roles=("input", "idler")),
+    shared_load("equal"),
+    loaded_contact(100.0),
 ]
-TYPES = (Drive, Body, Material, MeshLoad, Transverse, Contact, DrivingForce, Gearbox, Torsional, Requirements)
+TYPES = (
+    *(Drive, Body, Material, MeshLoad, Transverse, Contact, DrivingForce, Gearbox, Torsional, Requirements),
+    *(MeshOscillator, TwoGears, shared_load, loaded_contact),
+)
 
 numbers = st.one_of(
     st.integers(-(10**12), 10**12),
@@ -77,4 +96,5 @@ def test_one_parameter_replaced_by_anything(part, data):
         assert not isinstance(kept, float) or math.isfinite(kept)
     named = [other for other in names if other in message]
     # Teeth that fit no longer, or a power without its speed, may be told of the other one.
-    assert name in message or (named and type(part) in (Drive, Body, Transverse, Gearbox)), message
+    several = (Drive, Body, Transverse, Gearbox, MeshOscillator, TwoGears)
+    assert name in message or (named and type(part) in several), message
