@@ -68,7 +68,7 @@ def mode_critical_powers(body: Body, pinion_speed: float, spread: Spread = RIM_P
         If `pinion_speed` is not a number greater than 0.
     """
     points = spread.points(body.drive)
-    squares = np.stack([modes(points.radius) ** 2 for modes in body.modes], axis=1)
+    squares = np.stack([modes.continued(points.radius) ** 2 for modes in body.modes], axis=1)
     tilt = squares @ (points.share / points.radius**2) / body.outer_radius**2
     diameters = np.arange(body.nodal_diameters + 1)
     material = body.material

@@ -66,7 +66,8 @@ class PressedPoints(NamedTuple):
     Attributes
     ----------
     radius : ndarray, shape (m,)
-        r over the outer radius [-], at most 1.
+        r over the outer radius [-]. A tooth enters mesh beside the pinion's axis, some thousandths beyond 1: there the
+        disk is continued, as in :func:`facegear.mechanics.disk.unit_shape`.
     angle : ndarray, shape (m,)
         θ from the pinion's axis [rad].
     share : ndarray, shape (m,)
@@ -314,8 +315,7 @@ def _touching(contact: Contact, drive: Drive, instants: FloatArray) -> PressedPo
         np.ones(instants.size) if place.weight is None else place.weight(instants)[:, 0] for place in there
     ]
     share = np.asarray(stiffness) / np.sum(stiffness, axis=0)
-    # A tooth enters mesh beside the pinion's axis, some thousandths beyond the rim.
-    return PressedPoints(np.minimum(radius, 1.0).ravel(), angle.ravel(), share.ravel())
+    return PressedPoints(radius.ravel(), angle.ravel(), share.ravel())
 
 
 def root_thickness(drive: Drive) -> float:
