@@ -6,7 +6,7 @@ and makes ω² of the mode (m, n) complex,
 
     ω² ∓ iε,    ε = n F_t R_mn(a)²/(2πρah),
 
-or, where a force with the same moment presses at radii r with parts μ of it, n F_t a Σ μ R_mn(r)²/r² over 2πρh,
+or, where a force with the same moment presses at radii r with parts ϖ of it, n F_t a Σ ϖ R_mn(r)²/r² over 2πρh,
 
 so that it grows at ε/(2ω) while the viscous disk takes away ξω²/2. The two are equal at ε = ξω³, at any speed: the
 loss belongs to the material and turns with it, and so do the waves. This holds for a disk alone; a pinion that holds

@@ -7,10 +7,10 @@ moment (`Spread`).
 **Moment and direction.** A flank of a spur pinion has its normals at right angles to the pinion's axis. So has the
 force in the plane: at the place (r, θ), θ from the pinion's axis, its tangential part is to its radial part as cos θ to
 sin θ, and its arm about the gear's axis is r cos θ. A normal force of one size has the moment r_b N2/N1 wherever it
-presses on a conjugate tooth. Parts μ of the moment therefore are parts of the normal force. Their sum is one and the
+presses on a conjugate tooth. Parts ϖ of the moment therefore are parts of the normal force. Their sum is one and the
 moment is that of the printed force, F_t a:
 
-    F_θ = μ F_t a/r,    F_r = μ F_t (a/r) tan θ.
+    F_θ = ϖ F_t a/r,    F_r = ϖ F_t (a/r) tan θ.
 
 **Stiffness.** Where the disk bends by w = Σ q_i φ_i it is drawn in: its points move in its plane by u = ½ Σ q_i q_j
 v_ij, with v_ij the field, held at the bore and free of load, that relaxes the strain E_ij = sym(∇φ_i ⊗ ∇φ_j). A dead
@@ -71,7 +71,7 @@ class PressedPoints(NamedTuple):
     angle : ndarray, shape (m,)
         θ from the pinion's axis [rad].
     share : ndarray, shape (m,)
-        Part μ of the moment [-]; their sum is 1.
+        Part ϖ of the moment [-]; their sum is 1.
     """
 
     radius: FloatArray

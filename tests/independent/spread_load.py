@@ -20,7 +20,7 @@ ACROSS = np.polynomial.legendre.leggauss(7)
 
 @dataclass(frozen=True)
 class Press:
-    """Forces whose moment is that of 1 N at the rim: shares μ at angles, on a strip or on circles.
+    """Forces whose moment is that of 1 N at the rim: shares of it at angles, on a strip or on circles.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Press:
         return complex((mean * turned).sum()), complex((1j * np.tan(theta) * mean * turned).sum())
 
     def density(self, k: int, x: float) -> tuple[complex, complex]:
-        """Amplitudes of f_θ and, for sin, of f_r, over 1 N/(πa²): dμ/(x² dx) each."""
+        """Amplitudes of f_θ and, for sin, of f_r, over 1 N/(πa²): dϖ/(x² dx) each."""
         tangential, radial = self.waves(k, x)
         scale = (1.0 if k else 0.5) / (x**2 * (self.strip[1] - self.strip[0]))
         return tangential * scale, radial * scale

@@ -104,7 +104,7 @@ def test_stresses_of_the_other_route_carry_moment_and_force():
     outside = np.array([1.0, 1.0, 0.75, 0.25])
     np.testing.assert_allclose(2 * x**2 * shear, outside, rtol=1e-9)
     radial, shear, _ = stresses(1, 0.0, 0.3, c, press, x[:2])
-    # Force along y is ∫ (σ_rr sin θ + σ_rθ cos θ) r dθ h; the whole force is ∫ dμ/x.
+    # Force along y is ∫ (σ_rr sin θ + σ_rθ cos θ) r dθ h; the whole force is ∫ dϖ/x.
     np.testing.assert_allclose(x[:2] * (radial + shear), np.log(1.0 / 0.8) / 0.2, rtol=1e-9)
 
 
@@ -216,7 +216,7 @@ class TestPoints:
         assert points.share.min() > 0.0
         assert points.radius.max() < 1.002
         assert points.radius.min() > DRIVE.inner_radius / DRIVE.outer_radius - 1e-9
-        # Arm of the force about the axis: r cos θ, so that the moment is μ F_t a.
+        # Arm of the force about the axis: r cos θ, so that the moment is ϖ F_t a.
         force = np.hypot(points.tangential, points.radial)
         moment = force * points.radius * np.cos(points.angle)
         np.testing.assert_allclose(moment, points.share, rtol=1e-12)
