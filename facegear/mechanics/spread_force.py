@@ -18,10 +18,11 @@ force has the potential -F·u, and thus the stiffness
 
     K_ij = -F·v_ij at the place where it acts.
 
-By Betti's theorem this is the work ∫ σ : E_ij h dA of its stresses (6-27), but the force may act anywhere: v_ij is
-smooth where σ has a pole under the force. Averages of a smooth field over a patch need a few points, and there is no
-field to be solved with a force inside the disk. A force that follows the slope of the disk adds its transverse part
-(F_θ φ_j,θ/r + F_r φ_j,r) on the deflection φ_i under it, at each of its points: the one part that is not symmetric.
+By Betti's theorem this is the work ∫ σ : E_ij h dA of its stresses (6-27); the acceleration of the steady field is
+symmetric too, so that it holds for a spinning disk. But the force may act anywhere: v_ij is smooth where σ has a pole
+under the force. Averages of a smooth field over a patch need a few points, and there is no field to be solved with a
+force inside the disk. A force that follows the slope of the disk pushes sideways on the deflection under it, and adds
+-φ_i (F_θ φ_j,θ/r + F_r φ_j,r) at each of its points: the one part that is not symmetric.
 
 In the harmonic k the amplitudes of v obey the equations of :mod:`facegear.mechanics.inplane` with the right-hand sides
 
