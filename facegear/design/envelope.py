@@ -6,6 +6,8 @@ and makes ω² of the mode (m, n) complex,
 
     ω² ∓ iε,    ε = n F_t R_mn(a)²/(2πρah),
 
+or, where a force with the same moment presses at radii r with parts ϖ of it, n F_t a Σ ϖ R_mn(r)²/r² over 2πρh,
+
 so that it grows at ε/(2ω) while the viscous disk takes away ξω²/2. The two are equal at ε = ξω³, at any speed: the
 loss belongs to the material and turns with it, and so do the waves. This holds for a disk alone; a pinion that holds
 the waves in place changes it.
@@ -29,6 +31,7 @@ from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
 from facegear.mechanics.plate import Body
+from facegear.mechanics.spread_force import RIM_POINT, Spread
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import ascending, nonnegative, within
 from facegear.support.types import FloatArray
@@ -43,7 +46,7 @@ _WINDOWS = {"window": 0.004, "widest": 0.03, "resolution": 3e-5}
 _MOST_TURNS = 30
 
 
-def mode_critical_powers(body: Body, pinion_speed: float) -> FloatArray:
+def mode_critical_powers(body: Body, pinion_speed: float, spread: Spread = RIM_POINT) -> FloatArray:
     """Power at which each mode of the disk alone begins to flutter under a follower force, to first order.
 
     Parameters
@@ -51,21 +54,25 @@ def mode_critical_powers(body: Body, pinion_speed: float) -> FloatArray:
     body : Body
     pinion_speed : float
         Ω1 at that power [rad/s].
+    spread : Spread, optional
+        Where the force presses.
 
     Returns
     -------
     ndarray, shape (M + 1, N + 1)
-        P = ξω³/(ε/P) [W]; infinite without nodal diameters, where the rim has no slope along the force.
+        P = ξω³/(ε/P) [W]; infinite without nodal diameters, where the disk has no slope along the force.
 
     Raises
     ------
     TypeError, ValueError
         If `pinion_speed` is not a number greater than 0.
     """
-    rim = np.stack([modes(1.0) for modes in body.modes], axis=1) / body.outer_radius
+    points = spread.points(body.drive)
+    squares = np.stack([modes.continued(points.radius) ** 2 for modes in body.modes], axis=1)
+    tilt = squares @ (points.share / points.radius**2) / body.outer_radius**2
     diameters = np.arange(body.nodal_diameters + 1)
     material = body.material
-    growth = diameters * DrivingForce(1.0, pinion_speed).newtons(body.drive) * rim**2
+    growth = diameters * DrivingForce(1.0, pinion_speed).newtons(body.drive) * tilt
     growth /= 2 * math.pi * material.density * body.outer_radius * body.thickness
     loss = material.viscous_loss_factor * body.eigenvalues**1.5
     powers = np.full(growth.shape, math.inf)
@@ -116,6 +123,7 @@ def critical_power(
     harmonics: int = 5,
     angles: Sequence[float] = (0.0,),
     highest_power: float = 0.0,
+    spread: Spread = RIM_POINT,
 ) -> float:
     """Smallest power of each of one or more equal pinions at which the disk alone is unstable.
 
@@ -136,6 +144,8 @@ def critical_power(
         power of each.
     highest_power : float
         Powers up to this one [W] are tried in any case.
+    spread : Spread
+        Where each force presses.
 
     Returns
     -------
@@ -153,12 +163,12 @@ def critical_power(
         raise ValueError(
             "viscous_loss_factor of the body's material must be greater than 0: without damping any power flutters"
         )
-    unit = float(mode_critical_powers(body, pinion_speed).min())
+    unit = float(mode_critical_powers(body, pinion_speed, spread).min())
     if unit == math.inf:
         return math.inf
 
     def growth(share: float) -> float:
-        force = DrivingForce(share * unit, pinion_speed, following, harmonics)
+        force = DrivingForce(share * unit, pinion_speed, following, harmonics, spread)
         return disk_growth_rate(body, force, speed, angles=angles)
 
     low, high = 0.0, _FIRST
@@ -222,7 +232,7 @@ def largest_power(model: Transverse, speeds: ArrayLike, *, tolerance: float = 1e
         raise ValueError("force of the model must be a DrivingForce, got None")
     tolerance = within("tolerance", tolerance, 1e-6, 0.1)
     low, high = ascending("speeds", speeds, "rad/s")
-    unit = float(mode_critical_powers(model.body, model.force.pinion_speed).min())
+    unit = float(mode_critical_powers(model.body, model.force.pinion_speed, model.force.spread).min())
 
     def at(power: float) -> Transverse:
         return replace_parameter(model, "force.power", power)

@@ -1,4 +1,8 @@
-"""Stiffness of the disk against bending in the plane stress of a rim force, K_f of section 6.3."""
+"""Stiffness of the disk against bending under driving forces in its plane, K_f of section 6.3.
+
+`edge_load_stiffness` is that of the text, from the plane stress of a force at the rim. `DrivingForce` has the force of
+a power wherever it presses (:mod:`facegear.mechanics.spread_force`); at the rim both are one matrix.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,7 @@ from facegear.geometry.drive import Drive
 from facegear.mechanics.disk import unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
 from facegear.mechanics.plate import Body, plate_quadrature
+from facegear.mechanics.spread_force import RIM_POINT, Spread, pressed_stiffness, require_spread
 from facegear.support.parameters import (
     designed,
     integer_at_least,
@@ -26,6 +31,7 @@ from facegear.support.parameters import (
 from facegear.support.types import FloatArray
 
 Following = Literal["follower", "dead"]
+_FOLLOWS = {"follower": 1.0, "dead": 0.0}
 
 # K_f as a series in the square of the speed, from 0 to this speed [rad/s] or 2, 4, 8 ... times it.
 _LOWEST_TOP = 128.0
@@ -172,9 +178,14 @@ def strong_form_stiffness(stress: EdgeLoadStress) -> FloatArray:
 
 
 def unit_stiffness(
-    body: Body, speed: float, harmonics: int, following: Following, angles: tuple[float, ...]
+    body: Body,
+    speed: float,
+    harmonics: int,
+    following: Following,
+    angles: tuple[float, ...],
+    spread: Spread = RIM_POINT,
 ) -> FloatArray:
-    """Sum of K_f of equal tangential forces of 1 N at several angles [1/(s² N)].
+    """Sum of K_f of equal forces with the moment of 1 N at the rim, at several angles [1/(s² N)].
 
     Speed enters by its square, and weakly: a series through nine speeds, kept, is exact to rounding.
 
@@ -188,6 +199,8 @@ def unit_stiffness(
     following : {"follower", "dead"}
     angles : tuple of float
         Of the forces [rad].
+    spread : Spread
+        Where each presses.
 
     Returns
     -------
@@ -197,28 +210,27 @@ def unit_stiffness(
     speed = within("speed", speed, 0.0, limit, "rad/s", hint="rpm?")
     octave = max(0, math.ceil(math.log2(speed / _LOWEST_TOP))) if speed > 0.0 else 0
     top = min(_LOWEST_TOP * 2**octave, limit)
-    return _stiffness_series(body, top, harmonics, following, angles)((speed / top) ** 2)
+    dead, added = _stiffness_series(body, top, harmonics, angles, spread)((speed / top) ** 2)
+    found: FloatArray = dead + _FOLLOWS[following] * added
+    return found
 
 
 @lru_cache(maxsize=256)
 def _stiffness_series(
-    body: Body, top: float, harmonics: int, following: Following, angles: tuple[float, ...]
+    body: Body, top: float, harmonics: int, angles: tuple[float, ...], spread: Spread
 ) -> ChebyshevSeries:
-    """Sum of K_f, (n, n), over (Ω2/top)² from 0 to 1."""
+    """K_f of dead forces and what following adds, (2, n, n), over (Ω2/top)² from 0 to 1."""
 
     def sampled(squares: FloatArray) -> FloatArray:
-        values = []
-        for speed in top * np.sqrt(squares):
-            stresses = (EdgeLoadStress(body, 1.0, float(speed), harmonics, angle=angle) for angle in angles)
-            values.append(np.sum([edge_load_stiffness(stress, following) for stress in stresses], axis=0))
-        return np.stack(values)
+        speeds = (top * np.sqrt(squares)).tolist()
+        return np.stack([pressed_stiffness(body, speed, harmonics, angles, spread) for speed in speeds])
 
     return ChebyshevSeries.sampled(sampled, 0.0, 1.0, _SERIES_DEGREE)
 
 
 @dataclass(frozen=True)
 class DrivingForce:
-    """Tangential force at the rim with which each pinion drives the disk (4-21), the same at every speed.
+    """Force in the plane with which each pinion drives the disk (4-21), the same at every speed.
 
     Parameters
     ----------
@@ -231,6 +243,9 @@ class DrivingForce:
     harmonics : int
         Largest harmonic of the stress under the force. Default 5, as printed; 2N couples all modes
         (:func:`complete_harmonics`).
+    spread : Spread
+        Where the force presses, with the moment that it has at the rim. Default: at one point of the rim, as printed;
+        :class:`facegear.mechanics.spread_force.FaceStrip` and its neighbours have it over the teeth.
 
     Raises
     ------
@@ -248,6 +263,7 @@ class DrivingForce:
     pinion_speed: float
     following: Following = "follower"
     harmonics: int = 5
+    spread: Spread = RIM_POINT
 
     def __post_init__(self) -> None:
         keep(
@@ -257,6 +273,7 @@ class DrivingForce:
             harmonics=integer_at_least("harmonics", self.harmonics, 0),
         )
         one_of("following", self.following, ("follower", "dead"))
+        require_spread("spread", self.spread)
 
     def newtons(self, drive: Drive) -> float:
         """Force at the pinion's pitch circle, F_t = P/(Ω1 r_p) [N] (4-21)."""
@@ -267,9 +284,11 @@ class DrivingForce:
 
         Raises
         ------
-        ValueError
-            If the mean shear stress round the bore, F_t R2/(2π b² h), passes a hundred times Young's modulus.
+        TypeError, ValueError
+            If the mean shear stress round the bore, F_t R2/(2π b² h), passes a hundred times Young's modulus, or the
+            teeth of the body's drive have no such spread.
         """
+        self.spread.points(body.drive)
         force, bore = self.newtons(body.drive), 2.0 * math.pi * body.bore_radius**2 * body.thickness
         stress, most = force * body.outer_radius / bore, _MOST_SHEAR * body.material.youngs_modulus
         if stress > most:
@@ -294,5 +313,5 @@ class DrivingForce:
         -------
         ndarray, shape (n, n)
         """
-        unit = unit_stiffness(body, speed, self.harmonics, self.following, angles)
+        unit = unit_stiffness(body, speed, self.harmonics, self.following, angles, self.spread)
         return self.newtons(body.drive) * unit

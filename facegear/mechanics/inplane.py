@@ -79,7 +79,7 @@ class HarmonicField:
         return np.stack([radial, shear, hoop])
 
 
-def _degree(bore_ratio: float, harmonic: int) -> int:
+def resolving_degree(bore_ratio: float, harmonic: int) -> int:
     """Degree at which x^±k, e^(±zt) on the interval with z = k |ln c|/2, is resolved to rounding."""
     z = (harmonic + 1) * -math.log(bore_ratio) / 2
     return 20 + math.ceil(math.sqrt(75 * z))
@@ -95,6 +95,53 @@ def collocation_points(degree: int) -> tuple[FloatArray, FloatArray]:
     matrix = np.outer(ends, 1 / ends) / (t[:, None] - t + np.eye(degree + 1))
     # The sum of each row is zero; so its rounding cancels that of the others.
     return t, matrix - np.diag(matrix.sum(axis=1))
+
+
+def edge_rows(degree: int) -> list[int]:
+    """Rows of :func:`collocation_system` that hold U = V = 0 at the bore, and P and Q at the rim."""
+    return [unknown * (degree + 1) + row for unknown, row in ((_U, degree), (_V, degree), (_P, 0), (_Q, 0))]
+
+
+def collocation_system(
+    bore_ratio: float, poissons_ratio: float, spin: float, harmonic: int, degree: int
+) -> FloatArray:
+    """Equations of one harmonic at the points of :func:`collocation_points`, from the rim to the bore.
+
+    Each condition at an edge takes the place of the equation of its unknown there (:func:`edge_rows`).
+
+    Parameters
+    ----------
+    bore_ratio, poissons_ratio, spin, harmonic
+        As for :func:`harmonic_field`.
+    degree : int
+        Of the polynomials in s.
+
+    Returns
+    -------
+    ndarray, shape (4 (degree + 1), 4 (degree + 1))
+        Factors of U, V, P, Q at all points, in this order.
+    """
+    k, nu = harmonic, poissons_ratio
+    t, derivative = collocation_points(degree)
+    half = -math.log(bore_ratio) / 2
+    size = degree + 1
+    one = np.eye(size)
+    x2 = np.exp(2 * half * (t - 1.0))
+    inertia, coupling = np.diag(spin**2 * (k**2 + 1) * x2), np.diag(spin**2 * 2 * k * x2)
+    d = derivative / half
+    zero = np.zeros((size, size))
+    system = np.block(
+        [
+            [d + nu * one, -nu * k * one, -(1 - nu**2) * one, zero],
+            [k * one, d - one, zero, -2 * (1 + nu) * one],
+            [inertia - one, k * one - coupling, d - nu * one, -k * one],
+            [k * one - coupling, inertia - k**2 * one, k * nu * one, d + one],
+        ]
+    )
+    rows = edge_rows(degree)
+    system[rows] = 0.0
+    system[rows, rows] = 1.0
+    return system
 
 
 @lru_cache(maxsize=4096)
@@ -125,33 +172,15 @@ def harmonic_field(bore_ratio: float, poissons_ratio: float, spin: float, harmon
     poissons_ratio = within("poissons_ratio", poissons_ratio, 0.0, 0.5)
     spin = within("spin", spin, 0.0, FASTEST_SPIN)
     k, nu = integer_within("harmonic", harmonic, 0, HIGHEST_HARMONIC), poissons_ratio
-    degree = _degree(bore_ratio, k)
-    t, derivative = collocation_points(degree)
-    half = -math.log(bore_ratio) / 2
+    degree = resolving_degree(bore_ratio, k)
     size = degree + 1
-    one = np.eye(size)
-    x2 = np.exp(2 * half * (t - 1.0))
-    inertia, coupling = np.diag(spin**2 * (k**2 + 1) * x2), np.diag(spin**2 * 2 * k * x2)
-    d = derivative / half
-    zero = np.zeros((size, size))
-    system = np.block(
-        [
-            [d + nu * one, -nu * k * one, -(1 - nu**2) * one, zero],
-            [k * one, d - one, zero, -2 * (1 + nu) * one],
-            [inertia - one, k * one - coupling, d - nu * one, -k * one],
-            [k * one - coupling, inertia - k**2 * one, k * nu * one, d + one],
-        ]
-    )
+    system = collocation_system(bore_ratio, nu, spin, k, degree)
     right = np.zeros((4 * size, 2))
-    # Each condition takes the place of the equation of its unknown at its edge; t = 1 is the rim.
-    for unknown, row in ((_U, degree), (_V, degree), (_P, 0), (_Q, 0)):
-        place = unknown * size + row
-        system[place] = 0.0
-        system[place, place] = 1.0
     right[_Q * size, 0] = right[_P * size, 1] = 1.0
-    values = np.linalg.solve(system, right).reshape(4, size, 2).transpose(1, 0, 2)[::-1]
+    unknowns = np.linalg.solve(system, right).reshape(4, size, 2)
+    values = np.ascontiguousarray(unknowns.transpose(1, 0, 2)[::-1], dtype=float)
     values.setflags(write=False)
-    return HarmonicField(bore_ratio, poissons_ratio, k, ChebyshevSeries(-2.0 * half, 0.0, values))
+    return HarmonicField(bore_ratio, poissons_ratio, k, ChebyshevSeries(math.log(bore_ratio), 0.0, values))
 
 
 @dataclass(frozen=True)

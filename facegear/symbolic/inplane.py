@@ -3,6 +3,9 @@ r"""Plane field of a spinning disk under a force at its rim, derived in SymPy (6
 Everything is dimensionless as in (6-1): lengths over the outer radius, stresses over E, Ω for Ω*. The kth harmonic
 under a tangential load is u_r = U(r) sin kθ, u_θ = V(r) cos kθ with the stresses S sin kθ, T cos kθ, H sin kθ (6-22).
 
+A disk that bends is strained in its plane by the slopes of its deflection; what these strains add to the equations is
+derived too.
+
 Two closed forms are derived beside the equations: the dissertation's Lamé potentials of Bessel functions, and
 Michell's solution of the disk at rest. Both are evaluated by mpmath with as many digits as asked for, because the
 first of them needs more than a computer's own sixteen.
@@ -28,6 +31,7 @@ beta = sp.Symbol("beta_k", positive=True)
 U, V, P, Q = (sp.Function(name)(r) for name in "UVPQ")
 phi, psi = (sp.Function(name)(r, theta) for name in ("phi_L", "psi_L"))
 Phi, Psi = (sp.Function(name)(r) for name in ("Phi", "Psi"))
+bending_strains = sp.symbols("E_rr E_rtheta E_thetatheta")  # amplitudes of sym(∇φ_i ⊗ ∇φ_j)
 lambda_1_squared = 1 / (1 - nu**2)  # (6-11)
 lambda_2_squared = 1 / (2 * (1 + nu))
 
@@ -40,11 +44,11 @@ class Stresses(NamedTuple):
     hoop: Any
 
 
-def stresses(u_r: Any, u_theta: Any) -> Stresses:
-    """Hooke's law of plane stress in polar coordinates."""
-    radial = sp.diff(u_r, r)
-    hoop = u_r / r + sp.diff(u_theta, theta) / r
-    shear = sp.diff(u_r, theta) / r + sp.diff(u_theta, r) - u_theta / r
+def stresses(u_r: Any, u_theta: Any, bent: tuple[Any, Any, Any] = (0, 0, 0)) -> Stresses:
+    """Hooke's law of plane stress in polar coordinates, with the strains E_rr, E_rθ, E_θθ that bending adds."""
+    radial = sp.diff(u_r, r) + bent[0]
+    hoop = u_r / r + sp.diff(u_theta, theta) / r + bent[2]
+    shear = sp.diff(u_r, theta) / r + sp.diff(u_theta, r) - u_theta / r + 2 * bent[1]
     return Stresses(
         lambda_1_squared * (radial + nu * hoop),
         lambda_2_squared * shear,
@@ -79,8 +83,27 @@ def first_order_system() -> Any:
     ImmutableMatrix, shape (4, 4)
         In r, Ω, ν and k. It contains no derivative of a known function, so it is regular for all k, and at Ω = 0.
     """
+    return sp.ImmutableMatrix(_first_order().jacobian([U, V, P, Q]).applyfunc(sp.factor))
+
+
+@cache
+def drawn_in() -> Any:
+    """Right-hand side that the strains E_rr sin kθ, E_rθ cos kθ, E_θθ sin kθ of bending add to the system.
+
+    Returns
+    -------
+    ImmutableMatrix, shape (4, 1)
+        In r, ν, k and the amplitudes `bending_strains`.
+    """
+    return sp.ImmutableMatrix(_first_order().subs({U: 0, V: 0, P: 0, Q: 0}).applyfunc(sp.factor))
+
+
+@cache
+def _first_order() -> Any:
+    """d(U, V, P, Q)/ds of one harmonic of the steady field of a disk that is bent."""
     sine, cosine = sp.sin(k * theta), sp.cos(k * theta)
-    field = stresses(U * sine, V * cosine)
+    E_rr, E_rt, E_tt = bending_strains
+    field = stresses(U * sine, V * cosine, (E_rr * sine, E_rt * cosine, E_tt * sine))
     # U' and V' from Hooke's law
     slopes = sp.solve(
         [sp.expand(field.radial / sine) - P / r, sp.expand(field.shear / cosine) - Q / r],
@@ -105,8 +128,7 @@ def first_order_system() -> Any:
         dict=True,
     )[0]
     derivatives = [slopes[sp.diff(U, r)], slopes[sp.diff(V, r)], rates[sp.diff(P, r)], rates[sp.diff(Q, r)]]
-    right = sp.Matrix([sp.expand(r * value) for value in derivatives])
-    return sp.ImmutableMatrix(right.jacobian([U, V, P, Q]).applyfunc(sp.factor))
+    return sp.Matrix([sp.expand(r * value) for value in derivatives])
 
 
 # --- Lamé's potentials and Bessel functions ------------------------------------------------------------------------

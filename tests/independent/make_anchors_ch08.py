@@ -8,24 +8,39 @@ written here once more.
 
 import math
 import sys
-from dataclasses import replace
+from dataclasses import fields, replace
+from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 import yaml
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import facegear as fg
 from facegear.mechanics.cases import CASE_1, CASE_2, EXAMPLE_B
 from facegear.support.labelled import load
-from tests.independent.complex_galerkin import Pinion, Spring, multipliers, oscillator_multipliers
+from tests.independent.complex_galerkin import (
+    ComplexDisk,
+    Pinion,
+    Spring,
+    multipliers,
+    oscillator_multipliers,
+)
 from tests.independent.make_anchors_ch04 import nominal_mass, reference_stiffness
+from tests.independent.spread_load import Press, PressedDisk
 from tests.mechanics.test_transverse import complex_disk
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 ROUTE = (
     "tests/independent/complex_galerkin.py: disks and pinions in complex modes and metres, one smooth piece of the "
     "period after the other by DOP853; tolerance 1e-8 of the spectral radius"
+)
+FORCE_ROUTE = (
+    "tests/independent/spread_load.py: plane stress under a body force shot from the bore by DOP853, its work on the "
+    "slopes in complex exponentials; growth rates of maps by complex_galerkin.py, tolerance 1e-8 of the spectral radius"
 )
 RADIUS_TOLERANCE = 1e-8
 LOADS = {"I": (1.0, 3e-6, 1.0), "II": (1.0, 1e-6, 1.0), "B": (0.25, 1e-5, 1.0)}
@@ -265,6 +280,194 @@ def verdict(stored, body, load, angles):
     yield anchor(sprung(body, load, found, at["speed"]), at)
 
 
+HORSEPOWER = 745.6998715822702
+PINION_SPEED = 5000.0 * math.pi / 30.0
+
+
+def teeth_at(path, x):
+    """Angles of the pairs in mesh at t/T0 and their shares by length."""
+    states = path.pair_states(np.atleast_1d(x))
+    there = states.in_contact[:, 0]
+    return states.angle[there, 0], (states.length / states.length.sum(axis=0))[there, 0]
+
+
+def press_of(body, name, instant=None):
+    """Where the force presses, by the name that the chapter gives it; the pairs in the mean or at an instant."""
+    drive, path = body.drive, fg.ContactPath(body.drive)
+    face = (drive.inner_radius / drive.outer_radius, 1.0)
+    root = drive.module * (math.pi / 2.0 + 2.5 * math.tan(drive.pressure_angle)) / drive.outer_radius
+    if name == "point at the rim":
+        return Press()
+    if name == "point at the pitch radius":
+        pitch = drive.module * drive.gear_teeth / 2.0 / drive.outer_radius
+        return Press(strip=(pitch, pitch))
+    if name == "face width":
+        return Press(strip=face)
+    if name == "face and root":
+        return Press(strip=face, thickness=root)
+    found = []
+    if instant is not None:
+        found.append((1.0, *teeth_at(path, instant)))
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    for start, end in pairwise([*path.breakpoints, 1.0] if instant is None else []):
+        for node, weight in zip(nodes, weights, strict=True):
+            x = (start + end) / 2.0 + (end - start) / 2.0 * node
+            found.append(((end - start) / 2.0 * weight, *teeth_at(path, x)))
+    angles = np.concatenate([angle for _, angle, _ in found])
+    shares = np.concatenate([weight * share for weight, _, share in found])
+    return Press(tuple(angles), tuple(shares), face, root)
+
+
+@cache
+def stiffness_of(body, press, speed):
+    """K_f of a dead and of a following force with the moment of 1 N at the rim."""
+    plain = disk_of(body)
+    values = {field.name: getattr(plain, field.name) for field in fields(ComplexDisk)}
+    return PressedDisk(**values, force=1.0, harmonics=5, press=press).parts(speed)
+
+
+def flutter(body, press, part, speed, near):
+    """Power at which the disk alone loses its stability, close to one [W]."""
+    _, C, K = disk_of(body).constant_matrices(speed)
+    dead, follower = stiffness_of(body, press, speed)
+    newton = 1.0 / (PINION_SPEED * body.drive.pitch_radius)
+    zero, one = np.zeros_like(K), np.eye(len(K))
+
+    def growth(power):
+        loaded = K + power * newton * (dead + part * (follower - dead))
+        return float(np.linalg.eigvals(np.block([[zero, one], [-loaded, -C]])).real.max())
+
+    assert growth(0.99 * near) < 0.0 < growth(1.01 * near)
+    return brentq(growth, 0.99 * near, 1.01 * near, rtol=1e-13)
+
+
+def value_at(variable, at, value, atol):
+    return {"variable": variable, "at": at, "value": float(value), "atol": float(atol)}
+
+
+def force_spread(stored):
+    speed, bodies = 500.0 * math.pi / 30.0, (CASE_1, CASE_2)
+    names = stored.spread_name.values.tolist()
+    for number, name in ((0, "face width"), (1, "pairs in mesh"), (1, "point at the pitch radius")):
+        at = {"body": float(number), "spread": float(names.index(name))}
+        body, press = bodies[number], press_of(bodies[number], name)
+        parts = stiffness_of(body, press, speed)
+        rim = stiffness_of(body, Press(), speed)
+        size = np.linalg.norm
+        yield value_at("dead", at, size(parts[0]) / size(rim[0]), 1e-8)
+        yield value_at("following", at, size(parts[1] - parts[0]) / size(rim[1] - rim[0]), 1e-8)
+        yield value_at("change", at, size(parts[1] - rim[1]) / size(rim[1]), 1e-8)
+        for variable, part in (("critical", 1.0), ("dead_critical", 0.0)):
+            near = float(stored[variable].sel(at))
+            yield value_at(variable, at, flutter(body, press, part, speed, near), 1e-7 * near)
+
+
+def force_tilt(stored):
+    for number, body in enumerate((CASE_1, CASE_2)):
+        disk, place = complex_disk(body), 48
+        r = body.bore_radius + (body.outer_radius - body.bore_radius) * place / 60.0
+        for n in (1, 3):
+            inside, rim = (float(disk.radial(0, n, np.asarray(at))) / at for at in (r, body.outer_radius))
+            at = {"body": float(number), "diameters": float(n), "place": float(place)}
+            yield value_at("tilt", at, (inside / rim) ** 2, 1e-9)
+
+
+def force_part(stored):
+    names = stored.spread_name.values.tolist()
+    for number, body, way, place in ((0, CASE_1, "pairs in mesh", 6), (1, CASE_2, "point at the rim", 8)):
+        part = float(stored.part[place])
+        at = {"body": float(number), "spread": float(names.index(way)), "part": part}
+        near = float(stored.critical.sel(at))
+        found = flutter(body, press_of(body, way), part, 500.0 * math.pi / 30.0, near)
+        yield value_at("critical", at, found, 1e-7 * near)
+
+
+def force_map(stored, body, load):
+    """One cell of each spread and direction: the strongest at the highest power."""
+    path = fg.ContactPath(body.drive)
+    for kind, way in (("growth_rate", 1), ("dead", 1), ("growth_rate", 0)):
+        power = float(stored.power[-1])
+        growth = stored[kind][way, -1].values
+        row, column = np.unravel_index(growth.argmax(), growth.shape)
+        at = {"spread": float(way), "power": power}
+        at |= {"stiffness": float(stored.stiffness[row]), "speed_rpm": float(stored.speed_rpm[column])}
+        speed = at["speed_rpm"] * math.pi / 30.0
+        parts = stiffness_of(body, press_of(body, str(stored.spread_name.values[way])), speed)
+        added = power / (PINION_SPEED * body.drive.pitch_radius) * parts[1 if kind == "growth_rate" else 0]
+
+        class Loaded(ComplexDisk):
+            def constant_matrices(self, speed, added=added):
+                M, C, K = super().constant_matrices(speed)
+                return M, C, K + added
+
+        plain = complex_disk(body)
+        disk = Loaded(**{field.name: getattr(plain, field.name) for field in fields(ComplexDisk)})
+        period = 2.0 * math.pi / (body.drive.gear_teeth * speed)
+        pinion = pinion_of(body, with_stiffness(load, at["stiffness"]))
+        found = np.abs(multipliers(disk, [centroid(path)], speed, period, **pinion)).max()
+        yield value_at(kind, at, math.log(found) / period, RADIUS_TOLERANCE / period)
+
+
+def moving_growth(body, load, newtons, speed, moving):
+    """Growth rate of a disk whose following force moves with the pairs, or rests in their mean [1/s]."""
+    path, disk = fg.ContactPath(body.drive), disk_of(body)
+    _, C, K = disk.constant_matrices(speed)
+    pinion, place = pinion_of(body, load), centroid(path)
+    period = 2.0 * math.pi / (body.drive.gear_teeth * speed)
+    n, waves = len(K), np.repeat(disk.waves, disk.M + 1)
+    mean = newtons * stiffness_of(body, press_of(body, "pairs in mesh"), 0.0)[1]
+    scale = np.repeat([math.sqrt(np.abs(K).max()), 1.0], n)
+    state = np.eye(2 * n, dtype=complex)
+    for start, end in pairwise([*path.breakpoints, 1.0]):
+        points = (start + end) / 2.0 + (end - start) / 2.0 * np.polynomial.chebyshev.chebpts1(14)
+        parts = [stiffness_of(body, press_of(body, "pairs in mesh", x), 0.0)[1] for x in points if moving]
+        series = np.polynomial.chebyshev.chebfit(
+            np.polynomial.chebyshev.chebpts1(14),
+            newtons * np.reshape(parts or [mean / newtons] * 14, (14, -1)),
+            13,
+        )
+
+        def rates(t, flat, start=start, end=end, series=series):
+            x = min(max(t / period, start + 1e-12), end - 1e-12)
+            own = np.polynomial.chebyshev.chebval((2.0 * x - start - end) / (end - start), series).reshape(
+                n, n
+            )
+            radius, angle = place.position(np.array([x]))
+            shape = np.array(
+                [disk.radial(m, abs(k), radius)[0] for k in disk.waves for m in range(disk.M + 1)]
+            )
+            phi = shape * np.exp(1j * waves * angle[0])
+            dyad = np.outer(phi.conj(), phi) / (2.0 * math.pi * disk.rho * disk.h)
+            Y = flat.reshape(2 * n, 2 * n) / scale[:, None]
+            force = (K + own + pinion["k_b"] * dyad) @ Y[:n] + (C + pinion["c_b"] * dyad) @ Y[n:]
+            moved = -np.linalg.solve(np.eye(n) + pinion["m_p"] * dyad, force)
+            return (np.concatenate([Y[n:], moved]) * scale[:, None]).ravel()
+
+        first = (state * scale[:, None]).ravel()
+        run = solve_ivp(
+            rates, (start * period, end * period), first, "DOP853", rtol=1e-9, atol=1e-9 * scale[0]
+        )
+        assert run.success, run.message
+        state = run.y[:, -1].reshape(2 * n, 2 * n) / scale[:, None]
+    found = np.abs(np.linalg.eigvals(state * scale[:, None] / scale[None, :])).max()
+    return math.log(found) / period
+
+
+def force_period(stored, body, load, power):
+    mean = stiffness_of(body, press_of(body, "pairs in mesh"), 0.0)[1]
+    for place in (5, 70):
+        x = float(stored.instant[place])
+        own = stiffness_of(body, press_of(body, "pairs in mesh", x), 0.0)[1]
+        departure = np.linalg.norm(own - mean) / np.linalg.norm(mean)
+        yield value_at("departure", {"instant": x}, departure, 1e-6)
+    shown = float(stored.speed_rpm[int(np.abs(stored.moving.values - stored["mean"].values).argmax())])
+    newtons = power * HORSEPOWER / (PINION_SPEED * body.drive.pitch_radius)
+    for variable, moving in (("moving", True), ("mean", False)):
+        found = moving_growth(body, load, newtons, shown * math.pi / 30.0, moving)
+        # The chapter's steps are of fourth order.
+        yield value_at(variable, {"speed_rpm": shown}, found, 1e-3)
+
+
 def main() -> None:
     """Write the anchors of the figures named, or of all."""
     two_pinions = (0.0, 2.0 * math.pi / 3.0)
@@ -279,12 +482,20 @@ def main() -> None:
         "ch08_verdict_1": lambda stored: verdict(stored, CASE_1, LOADS["I"], (0.0,)),
         "ch08_verdict_2": lambda stored: verdict(stored, CASE_2, LOADS["II"], (0.0,)),
         "ch08_verdict_3": lambda stored: verdict(stored, EXAMPLE_B.body, LOADS["B"], two_pinions),
+        "ch08_force_spread": force_spread,
+        "ch08_force_tilt": force_tilt,
+        "ch08_force_part": force_part,
+        "ch08_force_6_06": lambda stored: force_map(stored, CASE_1, LOADS["I"]),
+        "ch08_force_6_07": lambda stored: force_map(stored, CASE_2, LOADS["II"]),
+        "ch08_force_period_1": lambda stored: force_period(stored, CASE_1, LOADS["I"], 300.0),
+        "ch08_force_period_2": lambda stored: force_period(stored, CASE_2, LOADS["II"], 1000.0),
     }
     for name, compute in jobs.items():
         if sys.argv[1:] and name not in sys.argv[1:]:
             continue
         stored: xr.Dataset = load(DATA / "reference" / f"{name}.nc")
-        content = {"figure": name, "route": ROUTE, "anchors": list(compute(stored))}
+        route = FORCE_ROUTE if name.startswith("ch08_force") else ROUTE
+        content = {"figure": name, "route": route, "anchors": list(compute(stored))}
         (DATA / "anchors" / f"{name}.yaml").write_text(
             yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
         )

@@ -77,3 +77,10 @@ def test_weak_form_is_the_printed_one():
     others = g.sign * g.r * g.S_k * slope_R * slope_L + g.sign * g.n * g.q / g.r * g.H_k * R * L
     assert sp.expand(harmonic.integrand - sp.I / 2 * (shear + others)) == 0
     assert sp.expand(harmonic.boundary + sp.I / 2 * g.q * g.T_k * R * L) == 0
+
+
+def test_strains_of_bending_act_as_the_module_of_the_spread_force_says():
+    E_rr, E_rt, E_tt = symbolic.bending_strains
+    x, nu, k = symbolic.r, symbolic.nu, symbolic.k
+    expected = sp.Matrix([-x * (E_rr + nu * E_tt), -2 * x * E_rt, x * E_tt, -k * x * E_tt])
+    assert (symbolic.drawn_in() - expected).applyfunc(sp.simplify) == sp.zeros(4, 1)
