@@ -208,13 +208,22 @@ def maps(stored):
         at = strongest(stored, label)
         spring = Spring(centroid(path), whole(path))
         yield anchor(sprung(body, with_stiffness(LOADS["I"], at["value"]), [spring], at["speed"]), at)
+    tregold = fg.ContactPath(CASE_1.drive)
+    for row, column in ((30, 90), (150, 60)):
+        at = cell(stored, "as printed: flexible", row, column)
+        spring = Spring(centroid(tregold), whole(tregold))
+        yield anchor(sprung(CASE_1, with_stiffness(LOADS["I"], at["value"]), [spring], at["speed"]), at)
     at = strongest(stored, "as printed: frozen")
     load = with_stiffness(LOADS["I"], at["value"])
-    yield anchor(held(CASE_1, load, [centroid(fg.ContactPath(CASE_1.drive))], at["speed"]), at)
+    yield anchor(held(CASE_1, load, [centroid(tregold)], at["speed"]), at)
 
 
 def bases(stored):
-    for label, basis in (("flexible, M, N = 2, 6", (2, 6)), ("equal pairs, M, N = 1, 5", (1, 5))):
+    for label, basis in (
+        ("flexible, M, N = 2, 6", (2, 6)),
+        ("flexible, M, N = 2, 8", (2, 8)),
+        ("equal pairs, M, N = 1, 5", (1, 5)),
+    ):
         body = replace(CASE_1, nodal_circles=basis[0], nodal_diameters=basis[1])
         path, at = fg.ContactPath(CASE_1.drive), strongest(stored, label)
         found = [one_spring(path, (0.0, 0.0))]
@@ -229,6 +238,7 @@ def sharing(stored):
         ("equal", "Tregold's clock", None),
         ("length_share", "clock of the true sweep", geometric),
         ("equal", "clock of the true sweep", geometric),
+        ("length_share", "Tregold's clock", None),
     ):
         at = strongest(stored, f"{rule}; {clock}")
         found = springs_of_pairs(fg.ContactPath(CASE_1.drive, ratio), rule, (0.0, 0.0))
@@ -252,7 +262,11 @@ def clocking_rigid(stored):
 
 
 def gears(stored, number):
-    at = strongest(stored, "all")
+    yield gears_at(strongest(stored, "all"), number)
+    yield gears_at(cell(stored, "all", 1, 12), number)
+
+
+def gears_at(at, number):
     body = replace(CASE_1, drive=replace(CASE_1.drive, pinion_teeth=number))
     path, step = fg.ContactPath(body.drive), body.drive.angular_pitch
     second = round(at["value"])
@@ -263,7 +277,7 @@ def gears(stored, number):
             sense = (1.0 if driving else -1.0) * (1.0, -1.0)[gear]
             phase = 0.5 * gear * (number % 2)
             found.append(one_spring(path, (place * step, phase), bool(driving), sense, k, gear))
-    yield anchor(sprung(body, LOADS["I"], found, at["speed"], (1.0, -1.0)), at)
+    return anchor(sprung(body, LOADS["I"], found, at["speed"], (1.0, -1.0)), at)
 
 
 def verdict(stored, body, load, angles):
@@ -278,6 +292,22 @@ def verdict(stored, body, load, angles):
         for spring in springs_of_pairs(path, "equal", place, number=k)
     ]
     yield anchor(sprung(body, load, found, at["speed"]), at)
+    at = strongest(stored, "line contact, flexible")
+    path = fg.ContactPath(body.drive, body.drive.geometric_contact_ratio)
+    found = [one_spring(path, place, number=k) for k, place in enumerate(places)]
+    yield anchor(sprung(body, load, found, at["speed"]), at)
+
+
+def tongues(stored):
+    """Largest growth of the strongest tongue of one pinion and of two on both faces, at the speed where it has it."""
+    path = fg.ContactPath(CASE_1.drive)
+    for name, phases in (("one pinion", (0.0,)), ("both faces, half a period", (0.0, 0.5))):
+        section = stored.model_name.values.tolist().index(name)
+        growth = stored.largest_growth.values[section]
+        tongue = int(np.nanargmax(growth))
+        found = [one_spring(path, (0.0, phase), number=k) for k, phase in enumerate(phases)]
+        value = sprung(CASE_1, LOADS["I"], found, float(stored.peak.values[section, tongue]))
+        yield anchor(value, {"section": section, "tongue": tongue}) | {"variable": "largest_growth"}
 
 
 HORSEPOWER = 745.6998715822702
@@ -474,6 +504,7 @@ def main() -> None:
     jobs = {
         "ch08_maps": maps,
         "ch08_bases": bases,
+        "ch08_tongues": tongues,
         "ch08_sharing": sharing,
         "ch08_clocking": clocking,
         "ch08_clocking_rigid": clocking_rigid,

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from compendium.datasets.transverse import tongue_table
 from facegear.floquet.models import Model
 from facegear.maps.stability_map import stability_map
+from facegear.maps.tracing import Tongue
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s
 
@@ -87,6 +89,24 @@ def growth_rows(
             "model_name": text("model", ["all"], "Model"),
         },
     )
+
+
+def tongues_of(names: Sequence[str], found: Sequence[Sequence[Tongue]]) -> xr.Dataset:
+    """Tongues of several models, each a section.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the models.
+    found : sequence of sequence of Tongue
+
+    Returns
+    -------
+    xarray.Dataset
+        As :func:`compendium.datasets.transverse.tongue_table`, with the coordinate ``model_name``.
+    """
+    table = tongue_table(found, np.arange(len(names)), "chapter 8")
+    return table.assign_coords(model_name=text("section", list(names), "Model"))
 
 
 def shares(data: xr.Dataset) -> dict[str, tuple[float, float]]:

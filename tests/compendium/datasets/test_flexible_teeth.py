@@ -33,6 +33,16 @@ def test_rows_are_maps_of_one_value(maps):
     assert rows.value.values.tolist() == [1.0, 2.0]
 
 
+def test_tongues_stand_under_the_names_of_their_models():
+    found = [fg.tongues(model, fg.rad_per_s([600.0, 900.0])) for model in (HELD, SPRUNG)]
+    data = arrays.tongues_of(["rigid", "flexible"], found)
+    assert data.model_name.values.tolist() == ["rigid", "flexible"]
+    for section, one in enumerate(found):
+        lower = data.lower.values[section]
+        assert lower[~np.isnan(lower)].tolist() == pytest.approx([float(fg.rpm(tongue.lower)) for tongue in one])
+    assert any(found)
+
+
 def test_shares_count_what_grows():
     growth = np.array([[[-1.0, 2.0], [-3.0, -4.0]]])
     data = arrays.growth_maps({"rigid": HELD}, SPEEDS[:2], "stiffness", [0.5, 1.0], jobs=1)
