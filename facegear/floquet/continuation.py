@@ -1,0 +1,500 @@
+"""Families of periodic motions along one parameter, through folds, with what happens on the way.
+
+A motion of a system with clearances changes with speed, force or gap, and may turn back where two motions meet in a
+fold: the family is followed by its arc length in the space of initial state and parameter (Keller, in: Applications of
+Bifurcation Theory, 1977), each time with Newton's method on the whole motion (:mod:`facegear.floquet.contact_panels`).
+Where a Floquet multiplier passes 1 (fold), −1 (flip, from which motions of twice the period branch) or a pair of them
+the unit circle (torus), the place is found as the root of a function of the multipliers along the family.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from facegear.floquet.clearance import ClearanceSystem
+from facegear.floquet.contact_panels import Motion, Panels, linearised
+from facegear.floquet.orbits import Orbit, Step, require_clearances
+from facegear.floquet.periodic import named
+from facegear.support.parameters import finite, integer_at_least, keep, positive, within
+from facegear.support.types import FloatArray
+
+Kind = Literal["fold", "flip", "torus"]
+Systems = Callable[[float], ClearanceSystem]
+
+# Change of motion and parameter, over their sizes, and distance from the clearance, at which a step has settled.
+_SETTLED = 1e-10
+# Newton's method: steps after which it is given up, and those with the first derivative by the parameter.
+_MOST_STEPS, _OLD_SLOPE = 12, 4
+# Steps that Newton's method takes where the arc is left as it is.
+_USUAL_STEPS = 6
+# Change of the parameter for its derivative, over its span.
+_DIFFERENCE = 1e-6
+# Arc to which a special point is found; arcs below which a family is stuck.
+_RESOLUTION, _STUCK = 1e-9, 1e-7
+# First arc, and that onto a branch of twice the period.
+_FIRST_ARC, _ONTO_BRANCH = 1e-3, 1e-3
+# Least cosine between the tangents at both ends of an arc.
+_STRAIGHT = 0.9
+# Modulus beyond 1 by which a multiplier is no rounding.
+_BEYOND = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Special:
+    """A place on a family where multipliers pass the unit circle.
+
+    Attributes
+    ----------
+    kind : {"fold", "flip", "torus"}
+    parameter : float
+    orbit : Orbit
+    """
+
+    kind: Kind
+    parameter: float
+    orbit: Orbit
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A family of periodic motions in the order in which it was followed.
+
+    Attributes
+    ----------
+    parameters : array, shape (m,)
+    orbits : tuple of Orbit
+    special : tuple of Special
+        In the same order.
+    ended : str
+        Why it ends: at which end of the range, closed upon itself, after so many motions, or stuck where and why.
+    """
+
+    parameters: FloatArray
+    orbits: tuple[Orbit, ...]
+    special: tuple[Special, ...]
+    ended: str
+
+    @cached_property
+    def stable(self) -> NDArray[np.bool_]:
+        """Whether each motion is stable, shape (m,)."""
+        return np.array([orbit.is_stable for orbit in self.orbits], dtype=bool)
+
+    def along(self, function: Callable[[Orbit], object]) -> FloatArray:
+        """Values of a function of each motion, shape (m, ...)."""
+        return np.array([function(orbit) for orbit in self.orbits], dtype=float)
+
+    def reversed(self) -> Branch:
+        """Return the family in the opposite order."""
+        return replace(
+            self, parameters=self.parameters[::-1], orbits=self.orbits[::-1], special=self.special[::-1]
+        )
+
+    def joined(self, other: Branch) -> Branch:
+        """Return this family, followed by another that begins with the motion with which this one ends."""
+        return Branch(
+            np.concatenate([self.parameters, other.parameters[1:]]),
+            self.orbits + other.orbits[1:],
+            self.special + other.special,
+            other.ended,
+        )
+
+
+@dataclass(frozen=True)
+class Following:
+    """How a family is followed.
+
+    Parameters
+    ----------
+    longest_arc : float
+        Longest step, in parts of the range of the parameter and of the size of the motion, from 1e-6 to 1.
+    most : int
+        Motions after which it ends.
+    panels : Panels
+        How finely motions are resolved.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument.
+    """
+
+    longest_arc: float = 0.1
+    most: int = 3000
+    panels: Panels = Panels()
+
+    def __post_init__(self) -> None:
+        keep(self, longest_arc=within("longest_arc", self.longest_arc, 1e-6, 1.0))
+        keep(self, most=integer_at_least("most", self.most, 2))
+        if not isinstance(self.panels, Panels):
+            raise TypeError(f"panels must be a Panels, got {named(self.panels)}")
+
+
+def followed(
+    systems: Systems,
+    parameter: float,
+    orbit: Orbit,
+    low: float,
+    high: float,
+    *,
+    direction: float = 1.0,
+    following: Following | None = None,
+) -> Branch:
+    """Follow a periodic motion along a parameter, through folds, until it leaves a range.
+
+    Parameters
+    ----------
+    systems : callable
+        Parameter to :class:`ClearanceSystem`, whose breakpoints stay where they are.
+    parameter : float
+        Where the motion is known, from `low` to `high`.
+    orbit : Orbit
+        That motion, of any number of periods.
+    low, high : float
+        Ends of the range.
+    direction : float
+        Sense in which the parameter first goes: greater than 0, upwards, or less.
+    following : Following, optional
+
+    Returns
+    -------
+    Branch
+        All that was found; `ended` says why it ends.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument.
+
+    Examples
+    --------
+    A mass on a spring that acts beyond a gap of 1, under a force that swings: resonance bends to lower frequencies.
+
+    >>> from facegear.floquet.orbits import periodic_orbit
+    >>> from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+    >>> from facegear.floquet.piecewise import PiecewiseChebyshev
+    >>> one = PiecewiseChebyshev.constant([1.0])
+    >>> force = PiecewiseChebyshev.fit(lambda x, piece: 1.0 + 0.5 * np.cos(2.0 * np.pi * x), [0.0])
+    >>> def at(frequency):
+    ...     loads = (ContactLoad(one, 1.0, 0.1), ContactLoad(one, 1.0, 0.1))
+    ...     system = PeriodicSystem([[1.0]], [[0.0]], [[0.0]], loads, 2.0 * np.pi / frequency, force)
+    ...     return ClearanceSystem(system, sides=(1, -1), clearances=(1.0, 1.0))
+    >>> branch = followed(at, 1.5, periodic_orbit(at(1.5)), 0.6, 1.5, direction=-1.0)
+    >>> [(point.kind, round(point.parameter, 4)) for point in branch.special], branch.ended
+    ([], '')
+    """
+    setting = _Setting.of(systems, orbit, low, high, following)
+    at = within("parameter", parameter, setting.low, setting.high)
+    sense = math.copysign(1.0, finite("direction", direction))
+    return _followed(setting, _start(setting, orbit, at, sense), setting.following.longest_arc / 30.0)
+
+
+def doubled(
+    systems: Systems, flip: Special, low: float, high: float, *, following: Following | None = None
+) -> Branch:
+    """Follow the motion of twice the period that branches from a flip.
+
+    Parameters
+    ----------
+    systems, low, high, following
+        As for :func:`followed`.
+    flip : Special
+        Of that kind.
+
+    Returns
+    -------
+    Branch
+        From the first motion beside the flip.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument.
+    ArithmeticError
+        If no such motion is found beside the flip.
+    """
+    if not isinstance(flip, Special) or flip.kind != "flip":
+        raise ValueError(f'flip must be a Special of kind "flip", got {getattr(flip, "kind", named(flip))}')
+    setting = _Setting.of(systems, flip.orbit, low, high, following, 2)
+    values, vectors = np.linalg.eig(setting.scale @ flip.orbit.transition @ np.linalg.inv(setting.scale))
+    direction = vectors[:, np.abs(values + 1.0).argmin()].real
+    tangent = np.append(direction / np.linalg.norm(direction), 0.0)
+    whole = setting.at(flip.parameter)
+    step = Step.of(whole, flip.orbit.pattern.repeated(2), setting.panels)
+    state = flip.orbit.start
+    point = _Point(flip.parameter, step, step.motion(state), tangent, _slope(setting, step, flip.parameter))
+    onto, _ = _corrected(setting, point, _ONTO_BRANCH)
+    return _followed(setting, onto, _ONTO_BRANCH)
+
+
+@dataclass(frozen=True, eq=False)
+class _Setting:
+    """What stays the same along a family; arcs are of scaled states over their size and of parameters over their span."""
+
+    systems: Systems
+    base_periods: int
+    low: float
+    high: float
+    following: Following
+    scale: FloatArray
+    size: float
+
+    @classmethod
+    def of(
+        cls, systems: Systems, orbit: Orbit, low: float, high: float, following: Following | None, times: int = 1
+    ) -> _Setting:
+        if not callable(systems):
+            raise TypeError(f"systems must be a function of the parameter, got {named(systems)}")
+        if not isinstance(orbit, Orbit):
+            raise TypeError(f"orbit must be an Orbit, got {named(orbit)}")
+        low, high = finite("low", low), finite("high", high)
+        if low >= high:
+            raise ValueError(f"low must be less than high = {high!r}, got {low!r}")
+        scale = orbit.system.scale
+        states = orbit.state(np.linspace(0.0, 1.0, 200, endpoint=False)) @ scale.T
+        size = float(np.sqrt((states**2).sum(axis=1).mean()))
+        return cls(systems, times * orbit.periods, low, high, following or Following(), scale, positive("orbit", size))
+
+    @property
+    def span(self) -> float:
+        return self.high - self.low
+
+    @property
+    def panels(self) -> Panels:
+        return self.following.panels
+
+    def one(self, parameter: float) -> ClearanceSystem:
+        system = self.systems(parameter)
+        require_clearances(system)
+        return system
+
+    def at(self, parameter: float) -> ClearanceSystem:
+        return self.one(parameter).repeated(self.base_periods)
+
+    def scaled(self, state: FloatArray) -> FloatArray:
+        return self.scale @ state / self.size
+
+    def unscaled(self, state: FloatArray) -> FloatArray:
+        return np.asarray(np.linalg.solve(self.scale, state * self.size))
+
+
+@dataclass(frozen=True, eq=False)
+class _Slope:
+    """Derivatives by the parameter at a fixed pattern: of the state after a period, and of the motion."""
+
+    whole: FloatArray
+    """∂(Φ, x_p)/∂λ, shape (2n + 1, 2n + 1)."""
+    stepped: Step
+    step: Step
+    difference: float
+
+    def column(self, state: FloatArray) -> FloatArray:
+        return np.asarray((self.whole @ np.append(state, 1.0))[:-1])
+
+    def reached(self, state: FloatArray) -> FloatArray:
+        """Derivative of the displacements of the loads along the motion from a state."""
+        here, there = self.step.motion(state), self.stepped.motion(state)
+        return (there.reached - here.reached) / self.difference
+
+
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A motion of the family and the direction in which it goes on."""
+
+    parameter: float
+    step: Step
+    motion: Motion
+    tangent: FloatArray
+    slope: _Slope
+
+    @property
+    def state(self) -> FloatArray:
+        return np.asarray(self.motion.origin[:-1])
+
+    @cached_property
+    def tests(self) -> dict[Kind, float]:
+        """Functions of the multipliers that change sign at special points."""
+        values = np.linalg.eigvals(self.step.scaled_transition)
+        pairs = np.triu_indices(len(values), 1)
+        return {
+            "fold": float(self.tangent[-1]),
+            "flip": float(np.prod(values + 1.0).real),
+            "torus": float(np.prod(values[pairs[0]] * values[pairs[1]] - 1.0).real),
+        }
+
+
+def _slope(setting: _Setting, step: Step, parameter: float) -> _Slope:
+    change = _DIFFERENCE * setting.span
+    if parameter + change > setting.high:
+        change = -change
+    other = linearised(setting.at(parameter + change), step.along.pattern, setting.panels)
+    return _Slope((other.whole - step.along.whole) / change, Step(other, step.base), step, change)
+
+
+def _bordered(
+    setting: _Setting, step: Step, slope: _Slope, state: FloatArray, tangent: FloatArray, right: FloatArray
+) -> FloatArray:
+    """Solve for the change of scaled state and scaled parameter with a given residual and arc."""
+    n = state.size
+    matrix = np.empty((n + 1, n + 1))
+    inverse = np.linalg.inv(setting.scale)
+    matrix[:n, :n] = setting.scale @ step.transition @ inverse - np.eye(n)
+    matrix[:n, n] = setting.scaled(slope.column(state)) * setting.span
+    matrix[n] = tangent
+    return np.asarray(np.linalg.solve(matrix, right))
+
+
+def _start(setting: _Setting, orbit: Orbit, parameter: float, sense: float) -> _Point:
+    state = orbit.start
+    step = Step.of(setting.at(parameter), orbit.pattern, setting.panels)
+    slope = _slope(setting, step, parameter)
+    ahead = np.append(np.zeros(state.size), sense)
+    tangent = _bordered(setting, step, slope, state, ahead, np.append(np.zeros(state.size), 1.0))
+    return _Point(parameter, step, step.motion(state), tangent / np.linalg.norm(tangent), slope)
+
+
+def _corrected(setting: _Setting, point: _Point, arc: float) -> tuple[_Point, int]:
+    """Motion at some arc from a point, and how many steps it took.
+
+    Raises
+    ------
+    ArithmeticError
+        If it is not found.
+    """
+    n = point.state.size
+    moved = setting.unscaled(point.tangent[:n])
+    along = point.step.motion(moved, 0.0)
+    rate = point.tangent[n] * setting.span
+    further = arc * (along.reached + rate * point.slope.reached(point.state))
+    pattern, _ = point.step.pattern(point.motion, further)
+    state, parameter = point.state + arc * moved, point.parameter + arc * rate
+    slope: _Slope | None = None
+    for number in range(1, _MOST_STEPS + 1):
+        step = Step.of(setting.at(parameter), pattern, setting.panels)
+        fresh = slope is None or number > _OLD_SLOPE
+        slope = _slope(setting, step, parameter) if slope is None or fresh else slope
+        left = step.transition @ state + step.moved - state
+        gone = np.append(setting.scaled(state - point.state), (parameter - point.parameter) / setting.span)
+        right = np.append(-setting.scaled(left), arc - point.tangent @ gone)
+        change = _bordered(setting, step, slope, state, point.tangent, right)
+        if not np.isfinite(change).all() or np.abs(change).max() > 10.0:
+            raise ArithmeticError("Newton's method left the neighbourhood")
+        state = state + setting.unscaled(change[:n])
+        motion = step.motion(state)
+        gone_on = float(change[n]) * setting.span
+        pattern, mismatch = step.pattern(motion, gone_on * slope.reached(state) if fresh else 0.0)
+        if np.abs(change).max() < _SETTLED and mismatch < _SETTLED:
+            ahead = np.append(np.zeros(n), 1.0)
+            tangent = _bordered(setting, step, slope, state, point.tangent, ahead)
+            return _Point(parameter, step, motion, tangent / np.linalg.norm(tangent), slope), number
+        parameter += gone_on
+    raise ArithmeticError(
+        f"Newton's method did not settle: last change {np.abs(change).max():.2g}, contacts off by {mismatch:.2g}"
+    )
+
+
+def _followed(setting: _Setting, first: _Point, arc: float) -> Branch:
+    points, special = [first], list[Special]()
+    longest, ended, why = setting.following.longest_arc, "", ""
+    orbits = [_orbit(setting, first)]
+    while not ended:
+        point = points[-1]
+        if len(orbits) >= setting.following.most:
+            ended = f"after {len(orbits)} motions, at {point.parameter:.9g}"
+            break
+        if arc < _STUCK:
+            ended = f"stuck at {point.parameter:.9g}: {why}"
+            break
+        try:
+            new, count = _corrected(setting, point, arc)
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            arc, why = arc / 3.0, str(error)
+            continue
+        if new.tangent @ point.tangent < _STRAIGHT and arc > 10.0 * _STUCK:
+            arc, why = arc / 2.0, "the family turns ever more sharply"
+            continue
+        special += _special(setting, point, new, arc)
+        bound = setting.low if new.parameter < setting.low else setting.high
+        if not setting.low <= new.parameter <= setting.high:
+            new = _at_bound(setting, point, arc, bound)
+            ended = f"at {bound:.9g}, the end of the range"
+        special = [x for x in special if setting.low <= x.parameter <= setting.high]
+        orbits.append(_orbit(setting, new))
+        points = [points[0], new]
+        if len(orbits) > 5 and _closed(setting, points[0], point, new):
+            ended = "closed upon itself"
+        if count < _USUAL_STEPS:
+            arc = min(1.5 * arc, longest)
+        elif count > _USUAL_STEPS + 1:
+            arc *= 0.7
+    parameters = np.array([x for x, _ in orbits])
+    return Branch(parameters, tuple(orbit for _, orbit in orbits), tuple(special), ended)
+
+
+def _orbit(setting: _Setting, point: _Point) -> tuple[float, Orbit]:
+    return point.parameter, point.step.orbit(setting.one(point.parameter), setting.base_periods, point.motion)
+
+
+def _at_bound(setting: _Setting, point: _Point, arc: float, bound: float) -> _Point:
+    """Motion between a point and that an arc further at an end of the range."""
+
+    def away(s: float) -> float:
+        return (point.parameter if s == 0.0 else _corrected(setting, point, s)[0].parameter) - bound
+
+    at = brentq(away, 0.0, arc, xtol=1e-13, rtol=1e-13) if away(0.0) != 0.0 else 0.0
+    return point if at == 0.0 else _corrected(setting, point, at)[0]
+
+
+def _closed(setting: _Setting, first: _Point, before: _Point, new: _Point) -> bool:
+    """Whether the first motion lies between two successive ones."""
+
+    def place(point: _Point) -> FloatArray:
+        return np.append(setting.scaled(point.state), point.parameter / setting.span)
+
+    start, end, at = place(before), place(new), place(first)
+    step = end - start
+    part = (at - start) @ step / (step @ step)
+    off = np.linalg.norm(at - start - part * step)
+    same = new.tangent @ first.tangent > _STRAIGHT
+    return bool(0.0 < part <= 1.0 and off < 0.05 * np.linalg.norm(step) and same)
+
+
+def _special(setting: _Setting, point: _Point, new: _Point, arc: float) -> list[Special]:
+    """Places between two points at which a test changes its sign, in their order."""
+    found = []
+    for kind, before in point.tests.items():
+        if before * new.tests[kind] < 0.0:
+            located = _located(setting, point, arc, kind)
+            if located is not None:
+                found.append(located)
+    found.sort(key=lambda item: item[0])
+    return [item for _, item in found]
+
+
+def _located(setting: _Setting, point: _Point, arc: float, kind: Kind) -> tuple[float, Special] | None:
+    known: dict[float, _Point] = {0.0: point}
+
+    def test(s: float) -> float:
+        if s not in known:
+            known[s] = _corrected(setting, point, s)[0]
+        return known[s].tests[kind]
+
+    try:
+        at = float(brentq(test, 0.0, arc, xtol=_RESOLUTION, rtol=1e-12))
+        there = known[at] if at in known else _corrected(setting, point, at)[0]
+    except (ArithmeticError, np.linalg.LinAlgError):
+        return None
+    values = np.linalg.eigvals(there.step.scaled_transition)
+    # Two real multipliers with product 1 change the sign of the test for a torus too, and are none.
+    crossing = values[np.abs(np.abs(values) - 1.0).argmin()]
+    if kind == "torus" and abs(crossing.imag) < 1e-6:
+        return None
+    parameter, orbit = _orbit(setting, there)
+    return at, Special(kind, parameter, orbit)
