@@ -117,6 +117,8 @@ class Following:
         Longest step, in parts of the range of the parameter and of the size of the motion, from 1e-6 to 1.
     most : int
         Motions after which it ends.
+    largest : float
+        Size of the motion, over that of the first, beyond which it ends: some families grow without bound.
     panels : Panels
         How finely motions are resolved.
 
@@ -128,11 +130,12 @@ class Following:
 
     longest_arc: float = 0.1
     most: int = 3000
+    largest: float = 1e3
     panels: Panels = Panels()
 
     def __post_init__(self) -> None:
         keep(self, longest_arc=within("longest_arc", self.longest_arc, 1e-6, 1.0))
-        keep(self, most=integer_at_least("most", self.most, 2))
+        keep(self, most=integer_at_least("most", self.most, 2), largest=positive("largest", self.largest))
         if not isinstance(self.panels, Panels):
             raise TypeError(f"panels must be a Panels, got {named(self.panels)}")
 
@@ -259,8 +262,8 @@ class _Setting:
             raise ValueError(f"low must be less than high = {high!r}, got {low!r}")
         scale = orbit.system.scale
         states = orbit.state(np.linspace(0.0, 1.0, 200, endpoint=False)) @ scale.T
-        size = float(np.sqrt((states**2).sum(axis=1).mean()))
-        return cls(systems, times * orbit.periods, low, high, following or Following(), scale, positive("orbit", size))
+        size = positive("orbit", float(np.abs(states).max()))
+        return cls(systems, times * orbit.periods, low, high, following or Following(), scale, size)
 
     @property
     def span(self) -> float:
@@ -318,6 +321,16 @@ class _Point:
     def state(self) -> FloatArray:
         return np.asarray(self.motion.origin[:-1])
 
+    def size(self, setting: _Setting) -> float:
+        """Largest scaled state along the motion."""
+        return float(np.abs(self.motion.starts[:, :-1] @ setting.scale.T).max())
+
+    def measured(self, factor: float) -> _Point:
+        """Return the point for sizes that are so many times as large."""
+        tangent = self.tangent.copy()
+        tangent[:-1] /= factor
+        return replace(self, tangent=tangent / np.linalg.norm(tangent))
+
     @cached_property
     def tests(self) -> dict[Kind, float]:
         """Functions of the multipliers that change sign at special points."""
@@ -360,8 +373,14 @@ def _start(setting: _Setting, orbit: Orbit, parameter: float, sense: float) -> _
     return _Point(parameter, step, step.motion(state), tangent / np.linalg.norm(tangent), slope)
 
 
-def _corrected(setting: _Setting, point: _Point, arc: float) -> tuple[_Point, int]:
-    """Motion at some arc from a point, and how many steps it took.
+class _LeftError(ArithmeticError):
+    """The range of the parameter was left."""
+
+
+def _corrected(
+    setting: _Setting, point: _Point, arc: float, bound: float | None = None
+) -> tuple[_Point, int]:
+    """Motion at some arc from a point, or there where the parameter is `bound`, and how many steps it took.
 
     Raises
     ------
@@ -369,21 +388,27 @@ def _corrected(setting: _Setting, point: _Point, arc: float) -> tuple[_Point, in
         If it is not found.
     """
     n = point.state.size
+    row, target = point.tangent, arc
+    if bound is not None:
+        row, target = np.append(np.zeros(n), 1.0), (bound - point.parameter) / setting.span
     moved = setting.unscaled(point.tangent[:n])
     along = point.step.motion(moved, 0.0)
     rate = point.tangent[n] * setting.span
     further = arc * (along.reached + rate * point.slope.reached(point.state))
     pattern, _ = point.step.pattern(point.motion, further)
-    state, parameter = point.state + arc * moved, point.parameter + arc * rate
+    state = point.state + arc * moved
+    parameter = point.parameter + arc * rate if bound is None else bound
     slope: _Slope | None = None
     for number in range(1, _MOST_STEPS + 1):
+        if not setting.low <= parameter <= setting.high:
+            raise _LeftError(f"the range is left at {parameter:.9g}")
         step = Step.of(setting.at(parameter), pattern, setting.panels)
         fresh = slope is None or number > _OLD_SLOPE
         slope = _slope(setting, step, parameter) if slope is None or fresh else slope
         left = step.transition @ state + step.moved - state
         gone = np.append(setting.scaled(state - point.state), (parameter - point.parameter) / setting.span)
-        right = np.append(-setting.scaled(left), arc - point.tangent @ gone)
-        change = _bordered(setting, step, slope, state, point.tangent, right)
+        right = np.append(-setting.scaled(left), target - row @ gone)
+        change = _bordered(setting, step, slope, state, row, right)
         if not np.isfinite(change).all() or np.abs(change).max() > 10.0:
             raise ArithmeticError("Newton's method left the neighbourhood")
         state = state + setting.unscaled(change[:n])
@@ -394,7 +419,7 @@ def _corrected(setting: _Setting, point: _Point, arc: float) -> tuple[_Point, in
             ahead = np.append(np.zeros(n), 1.0)
             tangent = _bordered(setting, step, slope, state, point.tangent, ahead)
             return _Point(parameter, step, motion, tangent / np.linalg.norm(tangent), slope), number
-        parameter += gone_on
+        parameter += gone_on if bound is None else 0.0
     raise ArithmeticError(
         f"Newton's method did not settle: last change {np.abs(change).max():.2g}, contacts off by {mismatch:.2g}"
     )
@@ -403,6 +428,7 @@ def _corrected(setting: _Setting, point: _Point, arc: float) -> tuple[_Point, in
 def _followed(setting: _Setting, first: _Point, arc: float) -> Branch:
     points, special = [first], list[Special]()
     longest, ended, why = setting.following.longest_arc, "", ""
+    largest = setting.following.largest * setting.size
     orbits = [_orbit(setting, first)]
     while not ended:
         point = points[-1]
@@ -414,22 +440,30 @@ def _followed(setting: _Setting, first: _Point, arc: float) -> Branch:
             break
         try:
             new, count = _corrected(setting, point, arc)
+        except _LeftError as error:
+            new, count, arc, why = _at_bound(setting, point), 0, arc / 3.0, str(error)
+            if new is None:
+                continue
+            ended = f"at {new.parameter:.9g}, the end of the range"
+            arc = float(point.tangent @ _away(setting, point, new))
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             arc, why = arc / 3.0, str(error)
             continue
-        if new.tangent @ point.tangent < _STRAIGHT and arc > 10.0 * _STUCK:
+        if new.tangent @ point.tangent < _STRAIGHT and arc > 10.0 * _STUCK and not ended:
             arc, why = arc / 2.0, "the family turns ever more sharply"
             continue
         special += _special(setting, point, new, arc)
-        bound = setting.low if new.parameter < setting.low else setting.high
-        if not setting.low <= new.parameter <= setting.high:
-            new = _at_bound(setting, point, arc, bound)
-            ended = f"at {bound:.9g}, the end of the range"
-        special = [x for x in special if setting.low <= x.parameter <= setting.high]
         orbits.append(_orbit(setting, new))
         points = [points[0], new]
         if len(orbits) > 5 and _closed(setting, points[0], point, new):
             ended = "closed upon itself"
+        size = new.size(setting)
+        if size > largest and not ended:
+            ended = f"at {new.parameter:.9g}, where the motion is {setting.following.largest:g} times as large"
+        if not 0.5 < size / setting.size < 2.0:
+            factor = size / setting.size
+            setting = replace(setting, size=size)
+            points = [point.measured(factor) for point in points]
         if count < _USUAL_STEPS:
             arc = min(1.5 * arc, longest)
         elif count > _USUAL_STEPS + 1:
@@ -442,14 +476,25 @@ def _orbit(setting: _Setting, point: _Point) -> tuple[float, Orbit]:
     return point.parameter, point.step.orbit(setting.one(point.parameter), setting.base_periods, point.motion)
 
 
-def _at_bound(setting: _Setting, point: _Point, arc: float, bound: float) -> _Point:
-    """Motion between a point and that an arc further at an end of the range."""
+def _away(setting: _Setting, point: _Point, new: _Point) -> FloatArray:
+    """Scaled way from one point to another, state and parameter."""
+    parameter = (new.parameter - point.parameter) / setting.span
+    return np.append(setting.scaled(new.state - point.state), parameter)
 
-    def away(s: float) -> float:
-        return (point.parameter if s == 0.0 else _corrected(setting, point, s)[0].parameter) - bound
 
-    at = brentq(away, 0.0, arc, xtol=1e-13, rtol=1e-13) if away(0.0) != 0.0 else 0.0
-    return point if at == 0.0 else _corrected(setting, point, at)[0]
+def _at_bound(setting: _Setting, point: _Point) -> _Point | None:
+    """Motion at the end of the range to which a point leads, if it is found from there without a turn."""
+    rate = float(point.tangent[-1]) * setting.span
+    bound = setting.high if rate > 0.0 else setting.low
+    arc = (bound - point.parameter) / rate if rate != 0.0 else np.inf
+    if not 0.0 < arc <= 3.0 * setting.following.longest_arc:
+        return None
+    try:
+        new, _ = _corrected(setting, point, arc, bound)
+    except (ArithmeticError, np.linalg.LinAlgError):
+        return None
+    straight = new.tangent @ point.tangent > _STRAIGHT
+    return new if straight and np.linalg.norm(_away(setting, point, new)) < 2.0 * arc else None
 
 
 def _closed(setting: _Setting, first: _Point, before: _Point, new: _Point) -> bool:

@@ -260,13 +260,13 @@ def _settled(
     system: ClearanceSystem, count: int, whole: ClearanceSystem, pattern: Pattern, panels: Panels
 ) -> Orbit:
     size = whole.scale
-    before, change, mismatch = np.full(2 * whole.size, np.inf), np.inf, np.inf
-    for _ in range(_MOST_STEPS):
+    before, change, mismatch = np.zeros(2 * whole.size), np.inf, np.inf
+    for number in range(_MOST_STEPS):
         step = Step.of(whole, pattern, panels)
         state = _fixed_point(step, size)
         motion = step.motion(state)
         pattern, mismatch = step.pattern(motion)
-        change = _relative(size, state - before, motion)
+        change = _relative(size, state - before, motion) if number else np.inf
         if change < _SETTLED and mismatch < _CONTACT:
             return step.orbit(system, count, motion)
         before = state
