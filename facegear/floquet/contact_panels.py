@@ -35,6 +35,8 @@ BoolArray = NDArray[np.bool_]
 _SAME = 1e-11
 # Steps of the search for an instant in its bracket.
 _REFINEMENTS = 60
+# Change of the place in a panel at which a step of Newton's method is the last: the next would be its square.
+_FOUND = 1e-10
 # Samples of a panel, over its nodes, among which changes of sign are looked for.
 _DENSITY = 3
 
@@ -46,7 +48,7 @@ class Panels:
     Parameters
     ----------
     nodes : int
-        Gauss nodes of each panel, 3 to 40: the degree to which accelerations are followed.
+        Gauss nodes of each panel, 4 to 40: the degree to which accelerations are followed.
     angle : float
         Largest angle of the fastest natural motion along a panel [rad].
 
@@ -60,7 +62,7 @@ class Panels:
     angle: float = 2.5
 
     def __post_init__(self) -> None:
-        keep(self, nodes=integer_within("nodes", self.nodes, 3, 40), angle=within("angle", self.angle, 0.05, 20.0))
+        keep(self, nodes=integer_within("nodes", self.nodes, 4, 40), angle=within("angle", self.angle, 0.05, 20.0))
 
     def edges(self, system: ClearanceSystem) -> FloatArray:
         """Ends of the panels without regard to contacts, breakpoints among them, from 0 to 1."""
@@ -136,6 +138,7 @@ class _Rule:
     end_once: FloatArray
     end_twice: FloatArray
     to_legendre: FloatArray
+    ends_to_legendre: FloatArray
     places: FloatArray
     to_places: FloatArray
     series_once: FloatArray
@@ -155,6 +158,8 @@ def _rule(count: int) -> _Rule:
     def at(series: FloatArray, places: FloatArray) -> FloatArray:
         return np.asarray(legendre.legvander(places, len(series) - 1) @ series)
 
+    # Of values at the start, the nodes and the end.
+    ends_to_legendre = np.linalg.inv(legendre.legvander(np.concatenate([[-1.0], z, [1.0]]), count + 1))
     places = -np.cos(np.linspace(0.0, np.pi, _DENSITY * count + 1))
     points = chebyshev.chebpts1(count + 2)
     return _Rule(
@@ -164,8 +169,9 @@ def _rule(count: int) -> _Rule:
         end_once=at(once, np.ones(1))[0],
         end_twice=at(twice, np.ones(1))[0],
         to_legendre=to_legendre,
+        ends_to_legendre=ends_to_legendre,
         places=places,
-        to_places=at(to_legendre, places),
+        to_places=at(ends_to_legendre, places),
         series_once=at(once, points),
         series_twice=at(twice, points),
         series_places=(1.0 + points) / 2.0,
@@ -175,7 +181,10 @@ def _rule(count: int) -> _Rule:
 
 @dataclass(frozen=True, eq=False)
 class _Load:
-    """One load at the nodes of all panels: shape and its rate (P, N, n), weight, e, ė (P, N), where it acts (P,)."""
+    """One load at the nodes of all panels: shape and its rate (P, N, n), weight, e, ė (P, N), where it acts (P,).
+
+    Shape and e at both ends besides, (P, N + 2, n) and (P, N + 2).
+    """
 
     phi: FloatArray
     rate: FloatArray
@@ -183,6 +192,8 @@ class _Load:
     error: FloatArray
     error_rate: FloatArray
     there: BoolArray
+    phi_and_ends: FloatArray
+    error_and_ends: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,7 +249,7 @@ def linearised(system: ClearanceSystem, pattern: Pattern, panels: Panels) -> Lin
     start, length = pattern.edges[:-1], np.diff(pattern.edges)
     fractions = start[:, np.newaxis] + length[:, np.newaxis] * rule.nodes
     inner, inverse = system.system, system.inverse_mass
-    loads = tuple(_load_at(system, number, fractions) for number in range(len(inner.loads)))
+    loads = tuple(_load_at(system, number, fractions, pattern.edges) for number in range(len(inner.loads)))
     shape = (*fractions.shape, n, n)
     stiffness = np.broadcast_to(inverse @ inner.stiffness, shape).copy()
     damping = np.broadcast_to(inverse @ inner.damping, shape).copy()
@@ -272,17 +283,24 @@ def linearised(system: ClearanceSystem, pattern: Pattern, panels: Panels) -> Lin
     return Linearised(system, pattern, panels, steps, _jumps(system, pattern), found, loads)
 
 
-def _load_at(system: ClearanceSystem, number: int, fractions: FloatArray) -> _Load:
+def _load_at(system: ClearanceSystem, number: int, fractions: FloatArray, edges: FloatArray) -> _Load:
     load, period = system.system.loads[number], system.period
-    phi = load.shape(fractions)
-    rate = load.slope(fractions) / period if load.rate == "total" else np.zeros_like(phi)
+    phi = _with_ends(load.shape, fractions, edges)
+    inner = phi[:, 1:-1]
+    rate = load.slope(fractions) / period if load.rate == "total" else np.zeros_like(inner)
     weight = np.ones(fractions.shape) if load.weight is None else load.weight(fractions)[..., 0]
-    error, error_rate = np.zeros(fractions.shape), np.zeros(fractions.shape)
+    error, error_rate = np.zeros(phi.shape[:2]), np.zeros(fractions.shape)
     if load.transmission_error is not None:
-        error = load.transmission_error(fractions)[..., 0]
+        error = _with_ends(load.transmission_error, fractions, edges)[..., 0]
         error_rate = load.transmission_error.derivative()(fractions)[..., 0] / period
-    there = (np.abs(phi).max(axis=(1, 2)) > 0.0) & (np.abs(weight).max(axis=1) > 0.0)
-    return _Load(phi, rate, weight, error, error_rate, there)
+    there = (np.abs(inner).max(axis=(1, 2)) > 0.0) & (np.abs(weight).max(axis=1) > 0.0)
+    return _Load(inner, rate, weight, error[:, 1:-1], error_rate, there, phi, error)
+
+
+def _with_ends(function: PiecewiseChebyshev, fractions: FloatArray, edges: FloatArray) -> FloatArray:
+    """Values at the starts, nodes (P, N) and ends of panels, limits from inside, (P, N + 2, ...)."""
+    first = function(np.concatenate([edges[:-1, np.newaxis], fractions], axis=1))
+    return np.concatenate([first, function(edges[1:], "left")[:, np.newaxis]], axis=1)
 
 
 def _jumps(system: ClearanceSystem, pattern: Pattern) -> FloatArray:
@@ -326,9 +344,12 @@ class Motion:
 
     @cached_property
     def reached(self) -> FloatArray:
-        """Displacement of each load at the nodes that a motion has, transmission errors left out, (P, N, p)."""
-        q, _ = self.at_nodes
-        return np.stack([(at.phi * q).sum(axis=-1) for at in self.along.loads], axis=-1)
+        """φᵀq of each load at the start, the nodes and the end of each panel, (P, N + 2, p)."""
+        rule = _rule(self.along.panels.nodes)
+        places, none = np.concatenate([[0.0], rule.nodes, [1.0]]), np.zeros((1, rule.nodes.size))
+        once = np.concatenate([none, rule.once, rule.end_once[np.newaxis]])
+        q, _ = self._states(places, once, np.concatenate([none, rule.twice, rule.end_twice[np.newaxis]]))
+        return np.stack([(at.phi_and_ends * q).sum(axis=-1) for at in self.along.loads], axis=-1)
 
     @property
     def _lengths(self) -> FloatArray:
@@ -341,15 +362,9 @@ class Motion:
         return q + h * places[:, np.newaxis] * v + h**2 * (twice @ a), v + h * (once @ a)
 
     @cached_property
-    def at_nodes(self) -> tuple[FloatArray, FloatArray]:
-        """q and q̇ at the nodes, each (P, N, n)."""
-        rule = _rule(self.along.panels.nodes)
-        return self._states(rule.nodes, rule.once, rule.twice)
-
-    @cached_property
     def displacements(self) -> FloatArray:
-        """Displacement u = φᵀq − e of each load at the nodes, (P, N, p); 0 where it has no shape."""
-        return self.reached - np.stack([at.error for at in self.along.loads], axis=-1)
+        """Displacement u = φᵀq − e of each load at the places of :attr:`reached`."""
+        return self.reached - np.stack([at.error_and_ends for at in self.along.loads], axis=-1)
 
     @cached_property
     def series(self) -> PiecewiseChebyshev:
@@ -375,7 +390,7 @@ def found_pattern(
     motion : Motion
     base : array
         Ends of panels without regard to contacts.
-    further : array, shape (P, N, p), optional
+    further : array, shape (P, N + 2, p), optional
         Added to the displacements of the loads.
 
     Returns
@@ -391,7 +406,7 @@ def found_pattern(
     sides, clearances = np.array(system.sides), np.array(system.clearances)
     there = np.stack([at.there for at in along.loads], axis=-1)
     beyond = (motion.displacements + further) * sides - clearances
-    series, samples = rule.to_legendre @ beyond, rule.to_places @ beyond
+    series, samples = rule.ends_to_legendre @ beyond, rule.to_places @ beyond
     guarded = there & (sides != 0)
     positive = samples > 0.0
     wrong = (positive != old.pressed[:, np.newaxis]) & guarded[:, np.newaxis]
@@ -407,7 +422,7 @@ def found_pattern(
 
 
 def _at(series: FloatArray, edges: FloatArray, panel: NDArray[np.intp], fractions: FloatArray) -> FloatArray:
-    """Values of Legendre series (P, N, p) on panels at some fractions, (m, p)."""
+    """Values of Legendre series (P, N + 2, p) on panels at some fractions, (m, p)."""
     local = 2.0 * (fractions - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
     return np.asarray(np.einsum("md,mdp->mp", legendre.legvander(local, series.shape[1] - 1), series[panel]))
 
@@ -456,7 +471,7 @@ def _grazes(
 
 
 def _root(series: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Roots of Legendre series (R, N) in brackets, by Newton's method held in them."""
+    """Roots of Legendre series (R, N + 2) in brackets, by Newton's method held in them."""
     if not low.size:
         return low
     own = series.T
@@ -469,9 +484,9 @@ def _root(series: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
         low, high = np.where(above, low, z), np.where(above, z, high)
         steep = legendre.legval(z, slope, tensor=False)
         new = z - value / np.where(steep == 0.0, 1.0, steep)
-        new = np.where((new > low) & (new < high), new, (low + high) / 2.0)
+        new = np.where((new >= low) & (new <= high), new, (low + high) / 2.0)
         change, z = np.abs(new - z).max(), new
-        if change < 4e-15:
+        if change < _FOUND:
             break
     return z
 
@@ -489,7 +504,8 @@ def _crossings(
         if np.minimum(own, 1.0 - own).min() < _SAME:
             continue
         sign = 1.0 if pressed[panel, number] else -1.0
-        ratio = 1.0 if load.rate == "total" else _frozen_ratio(motion, int(number), float(edges[panel]))
+        moves = load.rate == "frozen" and load.slope.largest > 0.0
+        ratio = _frozen_ratio(motion, int(number), float(edges[panel])) if moves else 1.0
         found.append((int(panel), int(number), sign * ratio))
     return tuple(found)
 
