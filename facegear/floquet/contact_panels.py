@@ -373,6 +373,33 @@ class Motion:
         states = np.concatenate(self._states(rule.series_places, rule.series_once, rule.series_twice), axis=-1)
         return PiecewiseChebyshev(self.along.pattern.edges[:-1], rule.to_series @ states)
 
+    def towards(self, before: PiecewiseChebyshev, part: float) -> tuple[PiecewiseChebyshev, FloatArray]:
+        """A motion between another one and this, for steps that would go too far.
+
+        Parameters
+        ----------
+        before : PiecewiseChebyshev
+            State of the other motion.
+        part : float
+            How much of the way to this one, up to 1.
+
+        Returns
+        -------
+        PiecewiseChebyshev
+            State of the motion between.
+        array, shape (P, N + 2, p)
+            By how much displacements of the loads differ from those of this one there.
+        """
+        rule, n = _rule(self.along.panels.nodes), self.along.system.size
+        starts, lengths = self.along.pattern.edges[:-1, np.newaxis], self.series.lengths[:, np.newaxis]
+        states = before(starts + lengths * rule.series_places)
+        mixed = self.series.coefficients * part + (1.0 - part) * (rule.to_series @ states)
+        between = PiecewiseChebyshev(self.series.breakpoints, mixed)
+        places = np.concatenate([[0.0], rule.nodes, [1.0]])
+        basis = chebyshev.chebvander(2.0 * places - 1.0, mixed.shape[1] - 1)
+        moved = basis @ (mixed - self.series.coefficients)[..., :n]
+        return between, np.stack([(at.phi_and_ends * moved).sum(axis=-1) for at in self.along.loads], axis=-1)
+
     @property
     def unresolved(self) -> float:
         """Last Legendre coefficients of the accelerations on a panel over the largest acceleration."""

@@ -43,6 +43,8 @@ _RESOLUTION, _STUCK = 1e-9, 1e-7
 _FIRST_ARC, _ONTO_BRANCH = 1e-3, 1e-3
 # Least cosine between the tangents at both ends of an arc.
 _STRAIGHT = 0.9
+# Way from the tangent, over the arc, at which another family may have been met.
+_ASIDE = 0.5
 # Modulus beyond 1 by which a multiplier is no rounding.
 _BEYOND = 1e-9
 
@@ -184,14 +186,14 @@ def followed(
     >>> from facegear.floquet.periodic import ContactLoad, PeriodicSystem
     >>> from facegear.floquet.piecewise import PiecewiseChebyshev
     >>> one = PiecewiseChebyshev.constant([1.0])
-    >>> force = PiecewiseChebyshev.fit(lambda x, piece: 1.0 + 0.5 * np.cos(2.0 * np.pi * x), [0.0])
+    >>> force = PiecewiseChebyshev.fit(lambda x, piece: 0.1 + 0.05 * np.cos(2.0 * np.pi * x), [0.0])
     >>> def at(frequency):
-    ...     loads = (ContactLoad(one, 1.0, 0.1), ContactLoad(one, 1.0, 0.1))
-    ...     system = PeriodicSystem([[1.0]], [[0.0]], [[0.0]], loads, 2.0 * np.pi / frequency, force)
+    ...     loads = (ContactLoad(one, 1.0), ContactLoad(one, 1.0))
+    ...     system = PeriodicSystem([[1.0]], [[0.06]], [[0.0]], loads, 2.0 * np.pi / frequency, force)
     ...     return ClearanceSystem(system, sides=(1, -1), clearances=(1.0, 1.0))
-    >>> branch = followed(at, 1.5, periodic_orbit(at(1.5)), 0.6, 1.5, direction=-1.0)
+    >>> branch = followed(at, 1.0, periodic_orbit(at(1.0)), 0.46, 1.0, direction=-1.0)
     >>> [(point.kind, round(point.parameter, 4)) for point in branch.special], branch.ended
-    ([], '')
+    ([], 'at 0.46, the end of the range')
     """
     setting = _Setting.of(systems, orbit, low, high, following)
     at = within("parameter", parameter, setting.low, setting.high)
@@ -449,8 +451,9 @@ def _followed(setting: _Setting, first: _Point, arc: float) -> Branch:
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             arc, why = arc / 3.0, str(error)
             continue
-        if new.tangent @ point.tangent < _STRAIGHT and arc > 10.0 * _STUCK and not ended:
-            arc, why = arc / 2.0, "the family turns ever more sharply"
+        off = np.linalg.norm(_away(setting, point, new) - arc * point.tangent)
+        if not ended and (off > _ASIDE * arc or (new.tangent @ point.tangent < _STRAIGHT and arc > 10.0 * _STUCK)):
+            arc, why = arc / 2.0, "the motion turns or jumps however short the step"
             continue
         special += _special(setting, point, new, arc)
         orbits.append(_orbit(setting, new))

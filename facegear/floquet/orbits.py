@@ -35,8 +35,10 @@ from facegear.support.types import ComplexArray, FloatArray
 _SETTLED = 1e-9
 # Distance from the clearance, over the largest displacement, that a wrong contact may have.
 _CONTACT = 1e-10
-# Steps of Newton's method.
-_MOST_STEPS = 40
+# Steps of Newton's method, and how many of them are whole; later ones go half the way.
+_MOST_STEPS, _WHOLE_STEPS = 60, 8
+# Change of the motion below which steps are whole.
+_NEAR = 0.02
 # A spectral radius beyond 1 by more than this is unstable and no rounding.
 _BEYOND = 1e-9
 # Least singular value of I − Φ, over the largest, of a motion that is known.
@@ -260,26 +262,35 @@ def _settled(
     system: ClearanceSystem, count: int, whole: ClearanceSystem, pattern: Pattern, panels: Panels
 ) -> Orbit:
     size = whole.scale
-    before, change, mismatch = np.zeros(2 * whole.size), np.inf, np.inf
+    before: PiecewiseChebyshev | None = None
+    change, mismatch = np.inf, np.inf
     for number in range(_MOST_STEPS):
         step = Step.of(whole, pattern, panels)
-        state = _fixed_point(step, size)
-        motion = step.motion(state)
-        pattern, mismatch = step.pattern(motion)
-        change = _relative(size, state - before, motion) if number else np.inf
+        motion = step.motion(_fixed_point(step, size))
+        change = _change(size, motion, before)
+        found, mismatch = step.pattern(motion)
         if change < _SETTLED and mismatch < _CONTACT:
             return step.orbit(system, count, motion)
-        before = state
+        # Whole steps may go to and fro between two patterns for ever: then part of the way, until the end is near.
+        part = 1.0 if number < _WHOLE_STEPS or change < _NEAR else 0.5
+        if part == 1.0 or before is None:
+            before, pattern = motion.series, found
+        else:
+            before, further = motion.towards(before, part)
+            pattern, _ = step.pattern(motion, further)
     raise ArithmeticError(
         f"no motion that repeats itself after {count} periods was found in {_MOST_STEPS} steps: the last changed it by "
         f"{change:.2g}, and contacts were off by {mismatch:.2g} of the largest displacement; give a guess nearer by"
     )
 
 
-def _relative(scale: FloatArray, change: FloatArray, motion: Motion) -> float:
-    """Size of a change of the state over the largest state of a motion."""
-    largest = np.abs(motion.starts[:, :-1] @ scale.T).max()
-    return float(np.abs(scale @ change).max() / max(largest, 1e-300))
+def _change(scale: FloatArray, motion: Motion, before: PiecewiseChebyshev | None) -> float:
+    """Largest change of the state at the ends of the panels from another motion, over the largest state."""
+    if before is None:
+        return float(np.inf)
+    states = motion.starts[:, :-1] @ scale.T
+    away = states - before(motion.along.pattern.edges[:-1]) @ scale.T
+    return float(np.abs(away).max() / max(np.abs(states).max(), 1e-300))
 
 
 def _fixed_point(step: Step, scale: FloatArray) -> FloatArray:
