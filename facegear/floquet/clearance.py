@@ -66,14 +66,18 @@ class ClearanceSystem:
                 )
         for side, clearance in zip(sides, clearances, strict=True):
             if side == 0 and clearance > 0.0:
-                raise ValueError(f"clearances must be 0 for a load that acts always (side 0), got {clearance!r}")
+                raise ValueError(
+                    f"clearances must be 0 for a load that acts always (side 0), got {clearance!r}"
+                )
         masses = [load.mass for load in self.system.loads if load.mass > 0.0]
         if masses:
             raise ValueError(
                 f"system must have loads without mass, which an impact would move in no time; got mass {masses[0]!r}"
             )
         if self.system.jumps:
-            raise ValueError(f"system must have no jumps of the state of its own, got {len(self.system.jumps)}")
+            raise ValueError(
+                f"system must have no jumps of the state of its own, got {len(self.system.jumps)}"
+            )
         keep(self, sides=sides, clearances=clearances)
 
     @property
@@ -103,7 +107,7 @@ class ClearanceSystem:
     @cached_property
     def inverse_mass(self) -> FloatArray:
         """M⁻¹, shape (n, n)."""
-        return np.linalg.inv(self.system.mass)
+        return np.asarray(np.linalg.inv(self.system.mass), dtype=float)
 
     @cached_property
     def scale(self) -> FloatArray:

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
@@ -62,15 +63,19 @@ class Panels:
     angle: float = 2.5
 
     def __post_init__(self) -> None:
-        keep(self, nodes=integer_within("nodes", self.nodes, 4, 40), angle=within("angle", self.angle, 0.05, 20.0))
+        keep(
+            self,
+            nodes=integer_within("nodes", self.nodes, 4, 40),
+            angle=within("angle", self.angle, 0.05, 20.0),
+        )
 
     def edges(self, system: ClearanceSystem) -> FloatArray:
-        """Ends of the panels without regard to contacts, breakpoints among them, from 0 to 1."""
+        """Return the ends of panels without regard to contacts, breakpoints among them, from 0 to 1."""
         ends = np.append(system.system.breakpoints, 1.0)
         turns = system.fastest * system.period / self.angle
         parts = [
             np.linspace(start, end, max(1, int(np.ceil(turns * (end - start) - 1e-9))) + 1)[:-1]
-            for start, end in zip(ends[:-1], ends[1:], strict=True)
+            for start, end in pairwise(ends)
         ]
         return np.append(np.concatenate(parts), 1.0)
 
@@ -118,7 +123,7 @@ class Pattern:
 
 
 def merged(base: FloatArray, instants: FloatArray) -> FloatArray:
-    """Ends of panels with some instants among them; those that nearly coincide are one."""
+    """Return ends of panels with some instants among them; those that nearly coincide are one."""
     if not instants.size:
         return base
     away = np.abs(instants[:, np.newaxis] - base).min(axis=1)
@@ -149,19 +154,22 @@ class _Rule:
 
 @lru_cache(maxsize=16)
 def _rule(count: int) -> _Rule:
-    z, weights = legendre.leggauss(count)
+    z, weights = (np.asarray(x, dtype=float) for x in legendre.leggauss(count))
     degrees = np.arange(count)
-    to_legendre = (degrees + 0.5)[:, np.newaxis] * legendre.legvander(z, count - 1).T * weights
-    once = legendre.legint(to_legendre, scl=0.5, lbnd=-1.0)
-    twice = legendre.legint(once, scl=0.5, lbnd=-1.0)
+    to_legendre = np.asarray(
+        (degrees + 0.5)[:, np.newaxis] * legendre.legvander(z, count - 1).T * weights, dtype=float
+    )
+    once = np.asarray(legendre.legint(to_legendre, scl=0.5, lbnd=-1.0), dtype=float)
+    twice = np.asarray(legendre.legint(once, scl=0.5, lbnd=-1.0), dtype=float)
 
     def at(series: FloatArray, places: FloatArray) -> FloatArray:
-        return np.asarray(legendre.legvander(places, len(series) - 1) @ series)
+        return np.asarray(legendre.legvander(places, len(series) - 1) @ series, dtype=float)
 
     # Of values at the start, the nodes and the end.
-    ends_to_legendre = np.linalg.inv(legendre.legvander(np.concatenate([[-1.0], z, [1.0]]), count + 1))
-    places = -np.cos(np.linspace(0.0, np.pi, _DENSITY * count + 1))
-    points = chebyshev.chebpts1(count + 2)
+    with_ends = legendre.legvander(np.concatenate([[-1.0], z, [1.0]]), count + 1)
+    ends_to_legendre = np.asarray(np.linalg.inv(with_ends), dtype=float)
+    places = np.asarray(-np.cos(np.linspace(0.0, np.pi, _DENSITY * count + 1)), dtype=float)
+    points = np.asarray(chebyshev.chebpts1(count + 2), dtype=float)
     return _Rule(
         nodes=(1.0 + z) / 2.0,
         once=at(once, z),
@@ -175,7 +183,7 @@ def _rule(count: int) -> _Rule:
         series_once=at(once, points),
         series_twice=at(twice, points),
         series_places=(1.0 + points) / 2.0,
-        to_series=np.linalg.inv(chebyshev.chebvander(points, count + 1)),
+        to_series=np.asarray(np.linalg.inv(chebyshev.chebvander(points, count + 1)), dtype=float),
     )
 
 
@@ -304,7 +312,7 @@ def _with_ends(function: PiecewiseChebyshev, fractions: FloatArray, edges: Float
 
 
 def _jumps(system: ClearanceSystem, pattern: Pattern) -> FloatArray:
-    """What Newton's method makes of contacts that begin or end at the starts of panels, (P, 2n + 1, 2n + 1)."""
+    """Return what Newton's method makes of contacts made or lost at the starts of panels, (P, 2n + 1, 2n + 1)."""
     n = system.size
     jumps = np.broadcast_to(np.eye(2 * n + 1), (len(pattern.pressed), 2 * n + 1, 2 * n + 1)).copy()
     for panel, number, ratio in pattern.crossings:
@@ -353,9 +361,13 @@ class Motion:
 
     @property
     def _lengths(self) -> FloatArray:
-        return np.asarray(np.diff(self.along.pattern.edges) * self.along.system.period)[:, np.newaxis, np.newaxis]
+        return np.asarray(np.diff(self.along.pattern.edges) * self.along.system.period)[
+            :, np.newaxis, np.newaxis
+        ]
 
-    def _states(self, places: FloatArray, once: FloatArray, twice: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _states(
+        self, places: FloatArray, once: FloatArray, twice: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
         n, h = self.along.system.size, self._lengths
         q, v = self.starts[:, np.newaxis, :n], self.starts[:, np.newaxis, n : 2 * n]
         a = self.accelerations
@@ -370,11 +382,13 @@ class Motion:
     def series(self) -> PiecewiseChebyshev:
         """State (q, q̇) against the fraction of the period."""
         rule = _rule(self.along.panels.nodes)
-        states = np.concatenate(self._states(rule.series_places, rule.series_once, rule.series_twice), axis=-1)
+        states = np.concatenate(
+            self._states(rule.series_places, rule.series_once, rule.series_twice), axis=-1
+        )
         return PiecewiseChebyshev(self.along.pattern.edges[:-1], rule.to_series @ states)
 
     def towards(self, before: PiecewiseChebyshev, part: float) -> tuple[PiecewiseChebyshev, FloatArray]:
-        """A motion between another one and this, for steps that would go too far.
+        """Return a motion between another one and this, for steps that would go too far.
 
         Parameters
         ----------

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -45,8 +45,8 @@ _FIRST_ARC, _ONTO_BRANCH = 1e-3, 1e-3
 _STRAIGHT = 0.9
 # Way from the tangent, over the arc, at which another family may have been met.
 _ASIDE = 0.5
-# Modulus beyond 1 by which a multiplier is no rounding.
-_BEYOND = 1e-9
+# Part of the parameter in a tangent that is no rounding.
+_VERTICAL = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,7 @@ class Following:
     longest_arc: float = 0.1
     most: int = 3000
     largest: float = 1e3
-    panels: Panels = Panels()
+    panels: Panels = field(default_factory=Panels)
 
     def __post_init__(self) -> None:
         keep(self, longest_arc=within("longest_arc", self.longest_arc, 1e-6, 1.0))
@@ -241,7 +241,7 @@ def doubled(
 
 @dataclass(frozen=True, eq=False)
 class _Setting:
-    """What stays the same along a family; arcs are of scaled states over their size and of parameters over their span."""
+    """What stays the same along a family; an arc is of scaled states over their size, parameters over their span."""
 
     systems: Systems
     base_periods: int
@@ -253,7 +253,13 @@ class _Setting:
 
     @classmethod
     def of(
-        cls, systems: Systems, orbit: Orbit, low: float, high: float, following: Following | None, times: int = 1
+        cls,
+        systems: Systems,
+        orbit: Orbit,
+        low: float,
+        high: float,
+        following: Following | None,
+        times: int = 1,
     ) -> _Setting:
         if not callable(systems):
             raise TypeError(f"systems must be a function of the parameter, got {named(systems)}")
@@ -304,7 +310,7 @@ class _Slope:
         return np.asarray((self.whole @ np.append(state, 1.0))[:-1])
 
     def reached(self, state: FloatArray) -> FloatArray:
-        """Derivative of the displacements of the loads along the motion from a state."""
+        """Differentiate the displacements of the loads along the motion from a state."""
         here, there = self.step.motion(state), self.stepped.motion(state)
         return (there.reached - here.reached) / self.difference
 
@@ -443,16 +449,20 @@ def _followed(setting: _Setting, first: _Point, arc: float) -> Branch:
         try:
             new, count = _corrected(setting, point, arc)
         except _LeftError as error:
-            new, count, arc, why = _at_bound(setting, point), 0, arc / 3.0, str(error)
-            if new is None:
+            last = _at_bound(setting, point)
+            if last is None:
+                arc, why = arc / 3.0, str(error)
                 continue
+            new, count = last, 0
             ended = f"at {new.parameter:.9g}, the end of the range"
             arc = float(point.tangent @ _away(setting, point, new))
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             arc, why = arc / 3.0, str(error)
             continue
         off = np.linalg.norm(_away(setting, point, new) - arc * point.tangent)
-        if not ended and (off > _ASIDE * arc or (new.tangent @ point.tangent < _STRAIGHT and arc > 10.0 * _STUCK)):
+        if not ended and (
+            off > _ASIDE * arc or (new.tangent @ point.tangent < _STRAIGHT and arc > 10.0 * _STUCK)
+        ):
             arc, why = arc / 2.0, "the motion turns or jumps however short the step"
             continue
         special += _special(setting, point, new, arc)
@@ -462,7 +472,9 @@ def _followed(setting: _Setting, first: _Point, arc: float) -> Branch:
             ended = "closed upon itself"
         size = new.size(setting)
         if size > largest and not ended:
-            ended = f"at {new.parameter:.9g}, where the motion is {setting.following.largest:g} times as large"
+            ended = (
+                f"at {new.parameter:.9g}, where the motion is {setting.following.largest:g} times as large"
+            )
         if not 0.5 < size / setting.size < 2.0:
             factor = size / setting.size
             setting = replace(setting, size=size)
@@ -518,7 +530,9 @@ def _special(setting: _Setting, point: _Point, new: _Point, arc: float) -> list[
     """Places between two points at which a test changes its sign, in their order."""
     found = []
     for kind, before in point.tests.items():
-        if before * new.tests[kind] < 0.0:
+        # A family of one parameter, as that of a linear system where it flips, has tangents that are rounding there.
+        clear = kind != "fold" or min(abs(before), abs(new.tests[kind])) > _VERTICAL
+        if before * new.tests[kind] < 0.0 and clear:
             located = _located(setting, point, arc, kind)
             if located is not None:
                 found.append(located)

@@ -250,7 +250,9 @@ def _first_pattern(whole: ClearanceSystem, count: int, guess: Any, panels: Panel
         return all_pressed(whole)
     if isinstance(guess, Orbit):
         if guess.periods != count:
-            raise ValueError(f"guess must be an orbit of {count} periods, as `periods` says, got {guess.periods}")
+            raise ValueError(
+                f"guess must be an orbit of {count} periods, as `periods` says, got {guess.periods}"
+            )
         return guess.pattern
     state = finite_array("guess", guess)
     if state.shape != (2 * whole.size,):

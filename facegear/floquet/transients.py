@@ -1,12 +1,13 @@
 """Where motions of systems with clearances end: many at once, by steps of the classical Runge-Kutta method.
 
 What is found is a guess for :func:`facegear.floquet.orbits.periodic_orbit`, or which of several motions attracts which
-initial states. Steps end at the breakpoints of the system, not at contacts, so that errors at these are of second order.
+initial states. Steps end at the breakpoints of the system, not at contacts: errors at these are of second order.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,101 +24,97 @@ _ANGLE = 0.2
 
 
 @dataclass(frozen=True, eq=False)
-class _Stages:
-    """What the equations need at the start, the middle and the end of each step, first axes (S, 3)."""
-
-    lengths: FloatArray
-    edges: FloatArray
-    phi: FloatArray
-    rate: FloatArray
-    row: FloatArray
-    edge: FloatArray
-    edge_rate: FloatArray
-    force: FloatArray
-
-
-def _stages(system: ClearanceSystem) -> _Stages:
-    inner, period = system.system, system.period
-    ends = np.append(inner.breakpoints, 1.0)
-    turns = system.fastest * period / _ANGLE
-    edges = np.append(
-        np.concatenate(
-            [
-                np.linspace(a, b, max(2, int(np.ceil(turns * (b - a)))) + 1)[:-1]
-                for a, b in zip(ends[:-1], ends[1:], strict=True)
-            ]
-        ),
-        1.0,
-    )
-    places: list[tuple[FloatArray, Side]] = [
-        (edges[:-1], "right"),
-        ((edges[:-1] + edges[1:]) / 2.0, "right"),
-        (edges[1:], "left"),
-    ]
-    phi, rate, row, edge, edge_rate, force = [], [], [], [], [], []
-    for x, side in places:
-        phi.append(np.stack([load.shape(x, side) for load in inner.loads], axis=1))
-        rate.append(
-            np.stack(
-                [
-                    load.slope(x, side) / period if load.rate == "total" else np.zeros((x.size, system.size))
-                    for load in inner.loads
-                ],
-                axis=1,
-            )
-        )
-        weighted = np.stack([weighted_shape(load, x, side) for load in inner.loads], axis=1)
-        row.append(weighted @ system.inverse_mass.T)
-        none = np.zeros(x.size)
-        errors = [load.transmission_error for load in inner.loads]
-        edge.append(np.stack([none if e is None else e(x, side)[:, 0] for e in errors], axis=1))
-        slopes = [none if e is None else e.derivative()(x, side)[:, 0] / period for e in errors]
-        edge_rate.append(np.stack(slopes, axis=1))
-        pushed = np.zeros((x.size, system.size)) if inner.force is None else inner.force(x, side)
-        force.append(pushed @ system.inverse_mass.T)
-    return _Stages(
-        np.diff(edges) * period,
-        edges,
-        *(np.stack(part, axis=1) for part in (phi, rate, row, edge, edge_rate, force)),
-    )
-
-
-@dataclass(frozen=True, eq=False)
 class _Field:
-    """Accelerations of many states at once."""
+    """Accelerations of many states (m, 2n) at once, at the start, the middle and the end of each step.
 
-    system: ClearanceSystem
-    at: _Stages
+    Attributes
+    ----------
+    edges : array, shape (S + 1,)
+    lengths : array, shape (S,)
+        Of the steps [s].
+    reading : array, shape (S, 3, 2n, 2p + n)
+        States to side · u and k u + c u̇ of each load, and to what shafts do.
+    known : array, shape (S, 3, 2p + n)
+        What is added to that: clearances, transmission errors, forces.
+    row : array, shape (S, 3, p, n)
+        Forces of the loads to accelerations.
+    """
 
-    def beyond(self, step: int, stage: int, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Displacement of the loads from their clearances (m, p), and how far they are in contact."""
-        sides = np.array(self.system.sides, dtype=float)
-        clearances = np.array(self.system.clearances)
-        u = q @ self.at.phi[step, stage].T - self.at.edge[step, stage]
-        into = u * sides - clearances
-        return u - sides * clearances, np.where(sides == 0.0, 1.0, into)
+    edges: FloatArray
+    lengths: FloatArray
+    reading: FloatArray
+    known: FloatArray
+    row: FloatArray
 
-    def __call__(self, step: int, stage: int, q: FloatArray, v: FloatArray) -> FloatArray:
-        inner = self.system.system
-        k = np.array([load.stiffness for load in inner.loads])
-        c = np.array([load.damping for load in inner.loads])
-        u, into = self.beyond(step, stage, q)
-        rate = v @ self.at.phi[step, stage].T + q @ self.at.rate[step, stage].T - self.at.edge_rate[step, stage]
-        forces = np.where(into > 0.0, k * u + c * rate, 0.0)
-        shafts = (q @ inner.stiffness.T + v @ inner.damping.T) @ self.system.inverse_mass.T
-        return np.asarray(self.at.force[step, stage] - shafts - forces @ self.at.row[step, stage])
+    @classmethod
+    def of(cls, system: ClearanceSystem) -> _Field:
+        inner, n, p = system.system, system.size, len(system.sides)
+        edges = _step_edges(system)
+        places: tuple[tuple[FloatArray, Side], ...] = (
+            (edges[:-1], "right"),
+            ((edges[:-1] + edges[1:]) / 2.0, "right"),
+            (edges[1:], "left"),
+        )
+        reading, known = (
+            np.zeros((edges.size - 1, 3, 2 * n, 2 * p + n)),
+            np.zeros((edges.size - 1, 3, 2 * p + n)),
+        )
+        row = np.zeros((edges.size - 1, 3, p, n))
+        shafts = np.concatenate([inner.stiffness, inner.damping], axis=1).T @ system.inverse_mass.T
+        reading[..., 2 * p :] = -shafts
+        for stage, (x, side) in enumerate(places):
+            if inner.force is not None:
+                known[:, stage, 2 * p :] = inner.force(x, side) @ system.inverse_mass.T
+            for number, load in enumerate(inner.loads):
+                phi, toward = load.shape(x, side), system.sides[number]
+                edge, edge_rate = np.full(x.size, toward * system.clearances[number]), np.zeros(x.size)
+                if load.transmission_error is not None:
+                    edge = edge + load.transmission_error(x, side)[:, 0]
+                    edge_rate = load.transmission_error.derivative()(x, side)[:, 0] / inner.period
+                row[:, stage, number] = weighted_shape(load, x, side) @ system.inverse_mass.T
+                reading[:, stage, :n, number] = toward * phi
+                known[:, stage, number] = -toward * edge if toward else 1.0
+                reading[:, stage, :n, p + number] = load.stiffness * phi
+                if load.rate == "total":
+                    reading[:, stage, :n, p + number] += load.damping * load.slope(x, side) / inner.period
+                reading[:, stage, n:, p + number] = load.damping * phi
+                known[:, stage, p + number] = -load.stiffness * edge - load.damping * edge_rate
+        return cls(edges, np.diff(edges) * inner.period, reading, known, row)
 
-    def advanced(self, step: int, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def into(self, step: int, states: FloatArray) -> FloatArray:
+        """How far loads are in contact in the middle of a step, (m, p)."""
+        count = self.row.shape[2]
+        return np.asarray((states @ self.reading[step, 1] + self.known[step, 1])[:, :count])
+
+    def rate(self, step: int, stage: int, states: FloatArray) -> FloatArray:
+        """Rates of the states."""
+        count, n = self.row.shape[2:]
+        read = states @ self.reading[step, stage] + self.known[step, stage]
+        forces = np.where(read[:, :count] > 0.0, read[:, count : 2 * count], 0.0)
+        rates = np.empty_like(states)
+        rates[:, :n] = states[:, n:]
+        rates[:, n:] = read[:, 2 * count :] - forces @ self.row[step, stage]
+        return rates
+
+    def advanced(self, step: int, states: FloatArray) -> FloatArray:
         """States after a step."""
-        h = float(self.at.lengths[step])
-        a1 = self(step, 0, q, v)
-        v2 = v + h / 2.0 * a1
-        a2 = self(step, 1, q + h / 2.0 * v, v2)
-        v3 = v + h / 2.0 * a2
-        a3 = self(step, 1, q + h / 2.0 * v2, v3)
-        v4 = v + h * a3
-        a4 = self(step, 2, q + h * v3, v4)
-        return q + h / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4), v + h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
+        h = float(self.lengths[step])
+        first = self.rate(step, 0, states)
+        second = self.rate(step, 1, states + h / 2.0 * first)
+        third = self.rate(step, 1, states + h / 2.0 * second)
+        last = self.rate(step, 2, states + h * third)
+        return np.asarray(states + h / 6.0 * (first + 2.0 * (second + third) + last))
+
+
+def _step_edges(system: ClearanceSystem) -> FloatArray:
+    """Return the ends of steps, breakpoints among them, from 0 to 1."""
+    ends = np.append(system.system.breakpoints, 1.0)
+    turns = system.fastest * system.period / _ANGLE
+    parts = [
+        np.linspace(start, end, max(2, int(np.ceil(turns * (end - start)))) + 1)[:-1]
+        for start, end in pairwise(ends)
+    ]
+    return np.append(np.concatenate(parts), 1.0)
 
 
 def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int = 1) -> FloatArray:
@@ -149,28 +146,25 @@ def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int 
     n = system.size
     if start.ndim != 2 or start.shape[1] != 2 * n:
         raise ValueError(f"states must have shape (m, {2 * n}), got shape {start.shape}")
-    field = _Field(system, _stages(system))
-    q, v, found = start[:, :n], start[:, n:], []
+    field, found = _Field.of(system), []
     for number in range(count):
-        for step in range(field.at.lengths.size):
-            q, v = field.advanced(step, q, v)
+        for step in range(field.lengths.size):
+            start = field.advanced(step, start)
         if number >= count - kept:
-            found.append(np.concatenate([q, v], axis=1))
+            found.append(start)
     return np.array(found)
 
 
 def contacts_along(system: ClearanceSystem, state: FloatArray) -> Pattern:
     """Contacts of the motion from a state along one period, to the accuracy of the steps."""
-    field, n = _Field(system, _stages(system)), system.size
-    q, v, rows = state[np.newaxis, :n], state[np.newaxis, n:], []
-    there = np.abs(field.at.row[:, 1]).max(axis=-1) > 0.0
-    for step in range(field.at.lengths.size):
-        start = q
-        q, v = field.advanced(step, q, v)
-        rows.append(field.beyond(step, 1, (start + q) / 2.0)[1][0] > 0.0)
+    field, states, rows = _Field.of(system), state[np.newaxis], []
+    there = np.abs(field.row[:, 1]).max(axis=-1) > 0.0
+    for step in range(field.lengths.size):
+        start, states = states, field.advanced(step, states)
+        rows.append(field.into(step, (start + states) / 2.0)[0] > 0.0)
     pressed: NDArray[np.bool_] = np.array(rows) & there
     changes = np.flatnonzero((pressed[1:] != pressed[:-1]).any(axis=1)) + 1
-    edges = merged(np.append(system.system.breakpoints, 1.0), field.at.edges[changes])
+    edges = merged(np.append(system.system.breakpoints, 1.0), field.edges[changes])
     middles = (edges[:-1] + edges[1:]) / 2.0
-    found = pressed[np.searchsorted(field.at.edges, middles, side="right") - 1]
-    return Pattern(edges, found, ())
+    found = pressed[np.searchsorted(field.edges, middles, side="right") - 1]
+    return Pattern(edges, found)

@@ -34,13 +34,13 @@ BackFlank = Literal["reversed", "printed"]
 
 @lru_cache(maxsize=256)
 def _reversed(function: PiecewiseChebyshev, turning_point: float) -> PiecewiseChebyshev:
-    """x ↦ f(Σ − x)."""
+    """X ↦ f(Σ − x)."""
     return function.backwards().shift(-turning_point)
 
 
 @lru_cache(maxsize=256)
 def _shifted(function: PiecewiseChebyshev) -> PiecewiseChebyshev:
-    """x ↦ f(x − ½)."""
+    """X ↦ f(x − ½)."""
     return function.shift(-0.5)
 
 

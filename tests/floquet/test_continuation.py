@@ -44,7 +44,9 @@ def test_folds_in_closed_form(resonance):
             x, v, w = unknown
             exact, start, step = ClosedForm(w), np.array([x, v]), 1e-5
             ends = [
-                exact.after(*(start + sign * d), TURN / w)[0] for d in step * np.eye(2) for sign in (1.0, -1.0)
+                exact.after(*(start + sign * d), TURN / w)[0]
+                for d in step * np.eye(2)
+                for sign in (1.0, -1.0)
             ]
             jacobian = np.array([ends[0] - ends[1], ends[2] - ends[3]]).T / (2.0 * step)
             left = exact.after(*start, TURN / w)[0] - start
@@ -116,11 +118,19 @@ ORBIT = periodic_orbit(gear_pair(1.5))
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
-        (lambda: followed(3.0, 1.5, ORBIT, 0.4, 1.5), TypeError, "systems must be a function of the parameter"),
+        (
+            lambda: followed(3.0, 1.5, ORBIT, 0.4, 1.5),
+            TypeError,
+            "systems must be a function of the parameter",
+        ),
         (lambda: followed(gear_pair, 1.5, 3.0, 0.4, 1.5), TypeError, "orbit must be an Orbit"),
         (lambda: followed(gear_pair, 1.5, ORBIT, 1.5, 0.4), ValueError, "low must be less than high"),
         (lambda: followed(gear_pair, 1.6, ORBIT, 0.4, 1.5), ValueError, "parameter must lie in"),
-        (lambda: followed(lambda w: meshing().system, 1.0, ORBIT, 0.4, 1.5), TypeError, "must be a ClearanceSystem"),
+        (
+            lambda: followed(lambda w: meshing().system, 1.0, ORBIT, 0.4, 1.5),
+            TypeError,
+            "must be a ClearanceSystem",
+        ),
         (lambda: doubled(gear_pair, Special("fold", 1.5, ORBIT), 0.4, 1.5), ValueError, 'of kind "flip"'),
         (lambda: Following(longest_arc=2.0), ValueError, "longest_arc must lie in"),
         (lambda: Following(most=1), ValueError, "most must be at least 2"),

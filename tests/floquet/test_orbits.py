@@ -28,7 +28,7 @@ def wave(*amplitudes, components=1):
 
 
 def gear_pair(frequency, mean=0.1, amplitude=0.05, ratio=0.03, contact_damping=0.0, gap=1.0):
-    """x'' + 2ζ x' + f(x) = F_m + F_a cos Wt with f = x ∓ b beyond a gap of 2b, and a damper in contact."""
+    """X'' + 2ζ x' + f(x) = F_m + F_a cos Wt with f = x ∓ b beyond a gap of 2b, and a damper in contact."""
     loads = (ContactLoad(ONE, 1.0, contact_damping),) * 2
     force = wave(mean, amplitude)
     system = PeriodicSystem([[1.0]], [[2.0 * ratio]], [[0.0]], loads, 2.0 * np.pi / frequency, force)
@@ -105,19 +105,22 @@ def test_gear_pair_in_closed_form(frequency, crossings, contact_damping):
     # The derivative of the closed form, central differences.
     step = 1e-5
     columns = [
-        (exact.after(*(start + d), system.period)[0] - exact.after(*(start - d), system.period)[0]) / (2.0 * step)
+        (exact.after(*(start + d), system.period)[0] - exact.after(*(start - d), system.period)[0])
+        / (2.0 * step)
         for d in step * np.eye(2)
     ]
     np.testing.assert_allclose(orbit.transition, np.array(columns).T, atol=2e-8)
 
 
 def coming(x):
-    """A shape that is there for a part of the period, and its derivative."""
-    return np.array([1.0 + 0.3 * x, -0.8 + 0.2 * np.cos(2.0 * x)]), np.array([0.3 + 0.0 * x, -0.4 * np.sin(2.0 * x)])
+    """Return a shape that is there for a part of the period, and its derivative."""
+    return np.array([1.0 + 0.3 * x, -0.8 + 0.2 * np.cos(2.0 * x)]), np.array(
+        [0.3 + 0.0 * x, -0.4 * np.sin(2.0 * x)]
+    )
 
 
 def staying(x):
-    """A shape that jumps back once a period, and its derivative."""
+    """Return a shape that jumps back once a period, and its derivative."""
     x = x % 1.0
     return np.array([1.0 + 0.0 * x, -1.0 + 0.1 * x**2]), np.array([0.0 * x, 0.2 * x])
 
@@ -140,7 +143,7 @@ def meshing(rate="total", factor=1.0, gap=0.02, damping=0.05):
 
 
 def as_drive(system):
-    """The same for event-driven integration."""
+    """Return the same for event-driven integration."""
     inner, period, turn = system.system, system.period, 2.0 * np.pi
 
     def plain(shape, ahead):
@@ -160,8 +163,24 @@ def as_drive(system):
     total = inner.loads[0].rate == "total"
     gap, damping = system.clearances[0], inner.loads[0].damping
     touches = [
-        Touch(plain(lambda x: coming(x % 1.0), 0.0), 1, gap, 6.0, damping, lambda t: t / period % 1.0 < 0.35, total),
-        Touch(erring, 1, gap, 9.0, damping, total=total, strength=lambda t: 1.0 + 0.2 * np.cos(turn * t / period)),
+        Touch(
+            plain(lambda x: coming(x % 1.0), 0.0),
+            1,
+            gap,
+            6.0,
+            damping,
+            lambda t: t / period % 1.0 < 0.35,
+            total,
+        ),
+        Touch(
+            erring,
+            1,
+            gap,
+            9.0,
+            damping,
+            total=total,
+            strength=lambda t: 1.0 + 0.2 * np.cos(turn * t / period),
+        ),
         Touch(plain(staying, 0.4), -1, gap, 8.0, damping, total=total),
     ]
     force = lambda t: np.array([0.4 + 0.3 * np.cos(turn * t / period), 0.0])  # noqa: E731
@@ -279,9 +298,21 @@ LINEAR = meshing().system
     ("call", "error", "message"),
     [
         (lambda: ClearanceSystem(LINEAR, (1, 1), (0.0, 0.0, 0.0)), ValueError, "sides must have 3 entries"),
-        (lambda: ClearanceSystem(LINEAR, (1, 1, 2), (0.0,) * 3), ValueError, "sides must be an integer from -1"),
-        (lambda: ClearanceSystem(LINEAR, (1, 1, -1), (0.1, 0.1, -0.1)), ValueError, "clearances must be 0 or"),
-        (lambda: ClearanceSystem(LINEAR, (1, 1, 0), (0.1,) * 3), ValueError, "must be 0 for a load that acts always"),
+        (
+            lambda: ClearanceSystem(LINEAR, (1, 1, 2), (0.0,) * 3),
+            ValueError,
+            "sides must be an integer from -1",
+        ),
+        (
+            lambda: ClearanceSystem(LINEAR, (1, 1, -1), (0.1, 0.1, -0.1)),
+            ValueError,
+            "clearances must be 0 or",
+        ),
+        (
+            lambda: ClearanceSystem(LINEAR, (1, 1, 0), (0.1,) * 3),
+            ValueError,
+            "must be 0 for a load that acts always",
+        ),
         (lambda: ClearanceSystem(LINEAR, 1, (0.1,) * 3), TypeError, "sides must be a sequence"),
         (lambda: ClearanceSystem(meshing(), (1,), (0.1,)), TypeError, "system must be a PeriodicSystem"),
         (
@@ -290,13 +321,19 @@ LINEAR = meshing().system
             "loads without mass",
         ),
         (
-            lambda: ClearanceSystem(replace(LINEAR, jumps=(StateJump(0.5, np.eye(4)),)), (1, 1, -1), (0.1,) * 3),
+            lambda: ClearanceSystem(
+                replace(LINEAR, jumps=(StateJump(0.5, np.eye(4)),)), (1, 1, -1), (0.1,) * 3
+            ),
             ValueError,
             "no jumps of the state",
         ),
         (lambda: periodic_orbit(LINEAR), TypeError, "system must be a ClearanceSystem"),
         (lambda: periodic_orbit(meshing(), 0), ValueError, "periods must be at least 1"),
-        (lambda: periodic_orbit(meshing(), guess=[1.0]), ValueError, r"guess must be a state of shape \(4,\)"),
+        (
+            lambda: periodic_orbit(meshing(), guess=[1.0]),
+            ValueError,
+            r"guess must be a state of shape \(4,\)",
+        ),
         (lambda: Panels(nodes=3), ValueError, "nodes must be"),
         (lambda: Panels(angle=0.0), ValueError, "angle must lie in"),
         (lambda: settled(meshing(), np.zeros(4), 3), ValueError, r"states must have shape \(m, 4\)"),

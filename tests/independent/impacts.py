@@ -8,6 +8,14 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 
+def _always(time):
+    return True
+
+
+def _whole(time):
+    return 1.0
+
+
 @dataclass
 class Touch:
     """A spring and damper that acts while side · u > gap, u = φ(t)ᵀq − e(t); `at` gives φ, φ̇, e, ė."""
@@ -17,9 +25,9 @@ class Touch:
     gap: float
     stiffness: float
     damping: float
-    there: Any = staticmethod(lambda time: True)
+    there: Any = _always
     total: bool = True
-    strength: Any = staticmethod(lambda time: 1.0)
+    strength: Any = _whole
 
 
 @dataclass
@@ -54,7 +62,7 @@ class Drive:
 
         return rate
 
-    def flown(self, state, periods=1, instants=None):
+    def flown(self, state, periods=1):
         """State after some periods, and how often contacts were made or lost."""
         inside = [x for x in self.breaks if 0.0 < x < self.period]
         edges = [0.0, *inside, self.period]
@@ -63,19 +71,29 @@ class Drive:
         for start, stop in pairwise(edges):
             middle = (start + stop) / 2.0
             there = [touch.there(middle) for touch in self.touches]
-            pressed = [on and self.beyond(x, start + 1e-13 * self.period, state) > 0.0 for x, on in zip(self.touches, there, strict=True)]
+            just = start + 1e-13 * self.period
+            pressed = [
+                on and self.beyond(x, just, state) > 0.0 for x, on in zip(self.touches, there, strict=True)
+            ]
             time = start
             while time < stop:
                 events = []
                 numbers = [i for i, on in enumerate(there) if on]
                 for i in numbers:
+
                     def event(t, y, touch=self.touches[i]):
                         return self.beyond(touch, t, y)
 
                     event.terminal, event.direction = True, -1.0 if pressed[i] else 1.0
                     events.append(event)
                 result = solve_ivp(
-                    self.rate(pressed), (time, stop), state, method="DOP853", rtol=1e-12, atol=1e-16, events=events
+                    self.rate(pressed),
+                    (time, stop),
+                    state,
+                    method="DOP853",
+                    rtol=1e-12,
+                    atol=1e-16,
+                    events=events,
                 )
                 time, state = float(result.t[-1]), result.y[:, -1]
                 if result.status == 1:
@@ -83,14 +101,6 @@ class Drive:
                     pressed[which] = not pressed[which]
                     count += 1
         return state, count
-
-    def repeating(self, state, periods=1, scale=None):
-        """State of the motion that repeats itself, by Newton's method from one nearby, and its Jacobian."""
-        for _ in range(6):
-            jacobian = self.jacobian(state, periods, scale)
-            left = self.flown(state, periods)[0] - state
-            state = state - np.linalg.solve(jacobian - np.eye(state.size), left)
-        return state
 
     def jacobian(self, state, periods=1, scale=None):
         sizes = 1e-6 * (np.abs(state) if scale is None else scale)
