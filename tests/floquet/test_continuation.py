@@ -8,6 +8,7 @@ from facegear.floquet.contact_panels import Panels
 from facegear.floquet.continuation import Following, Special, doubled, followed
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.orbits import periodic_orbit
+from facegear.floquet.transients import settled
 from tests.floquet.test_orbits import ClosedForm, gear_pair, meshing
 
 TURN = 2.0 * np.pi
@@ -83,6 +84,28 @@ def test_along_the_force_and_the_gap():
     np.testing.assert_allclose(by_force.orbits[-1].start * 1.25, by_gap.orbits[-1].start, atol=1e-9)
     assert by_force.ended == "at 0.8, the end of the range"
     assert by_gap.ended == "at 1.25, the end of the range"
+
+
+@pytest.mark.slow
+def test_a_closed_family_has_the_same_special_places_from_wherever_it_starts():
+    """Motions of three periods under a strong force form a loop of their own."""
+
+    def strong(frequency):
+        return gear_pair(frequency, amplitude=0.6)
+
+    found = []
+    for frequency in (1.5, 1.8):
+        states = settled(strong(frequency), np.random.default_rng(0).uniform(-4.0, 4.0, (60, 2)), 150, kept=4)
+        again = np.abs(states[3] - states[0]).max(axis=1)
+        once = np.abs(states[3] - states[2]).max(axis=1)
+        start = states[3, np.flatnonzero((again < 1e-3) & (once > 0.1))[0]]
+        orbit = periodic_orbit(strong(frequency), 3, start)
+        branch = followed(strong, frequency, orbit, 0.8, 2.5)
+        assert branch.ended == "closed upon itself"
+        found.append(sorted((point.kind, point.parameter) for point in branch.special))
+    first, second = found
+    assert [kind for kind, _ in first] == [kind for kind, _ in second] == ["flip"] * 6 + ["fold"] * 6
+    np.testing.assert_allclose([x for _, x in first], [x for _, x in second], atol=1e-7)
 
 
 def test_joined_and_reversed(resonance):
