@@ -1,6 +1,5 @@
 from .design.body import critical_thickness as critical_thickness
 from .drives.drive_file import read_drive_file as read_drive_file
-from .floquet.clearance import ClearanceSystem as ClearanceSystem
 from .floquet.hsu import resonance_bands as resonance_bands
 from .floquet.models import Excited as Excited
 from .floquet.models import WithoutRigidMotion as WithoutRigidMotion
@@ -9,7 +8,6 @@ from .floquet.multipliers import error_estimate as error_estimate
 from .floquet.multipliers import growth_rate as growth_rate
 from .floquet.multipliers import multipliers as multipliers
 from .floquet.multipliers import transition_matrix as transition_matrix
-from .floquet.orbits import periodic_orbit as periodic_orbit
 from .floquet.periodic import ContactLoad as ContactLoad
 from .floquet.periodic import PeriodicSystem as PeriodicSystem
 from .floquet.periodic import StateJump as StateJump
@@ -25,7 +23,6 @@ from .maps.response_map import frequency_response as frequency_response
 from .maps.response_map import response_map as response_map
 from .maps.stability_map import stability_map as stability_map
 from .maps.tracing import tongues as tongues
-from .mechanics.backlash import Backlash as Backlash
 from .mechanics.contact import Contact as Contact
 from .mechanics.edge_stiffness import DrivingForce as DrivingForce
 from .mechanics.inplane import EdgeLoadStress as EdgeLoadStress
@@ -49,9 +46,7 @@ from .support.parameters import watt as watt
 
 __all__ = [
     "STEEL",
-    "Backlash",
     "Body",
-    "ClearanceSystem",
     "Contact",
     "ContactLoad",
     "ContactPath",
@@ -81,7 +76,6 @@ __all__ = [
     "loaded_contact",
     "mesh_stiffness",
     "multipliers",
-    "periodic_orbit",
     "phase_split",
     "point_contact",
     "rad_per_s",

@@ -28,6 +28,5 @@ Radau            yes    yes         yes    yes      no             31     16 n e
 The order holds at jumps of A(t) too. That of Stepwise is 2 where there are none; of the last two it is that of the
 default number of nodes, at the end of a panel.
 Public: `PeriodicSystem`, `ContactLoad`, `PiecewiseChebyshev`, `transition_matrix`, `multipliers`, `growth_rate`,
-`error_estimate`, `steady_response`, `ClearanceSystem`, `periodic_orbit`, `Excited`, `WithoutRigidMotion`,
-`replace_parameter`, `resonance_bands`.
+`error_estimate`, `steady_response`, `Excited`, `WithoutRigidMotion`, `replace_parameter`, `resonance_bands`.
 """

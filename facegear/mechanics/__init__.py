@@ -7,5 +7,5 @@ pinions on the springs of their teeth (`mesh_oscillator`, `two_gears`; 8), the g
 with play between its teeth (`backlash`; 8), the classical equations (`classical`; 2), the dissertation's own drives
 (`cases`, `gearboxes`).
 Public: `Body`, `Contact`, `DrivingForce`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`,
-`MeshOscillator`, `TwoGears`, `Backlash`.
+`MeshOscillator`, `TwoGears`.
 """
