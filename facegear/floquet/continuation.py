@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -21,7 +22,7 @@ from scipy.optimize import brentq
 
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.contact_panels import Motion, Panels, linearised
-from facegear.floquet.orbits import Orbit, Step, require_clearances
+from facegear.floquet.orbits import Orbit, Step, periodic_orbit, require_clearances
 from facegear.floquet.periodic import named
 from facegear.support.parameters import finite, integer_at_least, keep, positive, within
 from facegear.support.types import FloatArray
@@ -92,6 +93,17 @@ class Branch:
     def along(self, function: Callable[[Orbit], object]) -> FloatArray:
         """Values of a function of each motion, shape (m, ...)."""
         return np.array([function(orbit) for orbit in self.orbits], dtype=float)
+
+    @cached_property
+    def sheets(self) -> tuple[Branch, ...]:
+        """Parts along which the parameter only grows or only falls, one for each passage between folds."""
+        rises = np.diff(self.parameters) > 0.0
+        turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
+        ends = [0, *turns.tolist(), self.parameters.size - 1]
+        return tuple(
+            Branch(self.parameters[i : j + 1], self.orbits[i : j + 1], (), self.ended)
+            for i, j in pairwise(ends)
+        )
 
     def reversed(self) -> Branch:
         """Return the family in the opposite order."""
@@ -237,6 +249,43 @@ def doubled(
     point = _Point(flip.parameter, step, step.motion(state), tangent, _slope(setting, step, flip.parameter))
     onto, _ = _corrected(setting, point, _ONTO_BRANCH)
     return _followed(setting, onto, _ONTO_BRANCH)
+
+
+def orbits_at(systems: Systems, branch: Branch, parameter: float) -> tuple[Orbit | None, ...]:
+    """Find the motions of a family at one value of its parameter.
+
+    Parameters
+    ----------
+    systems : callable
+        As for :func:`followed`.
+    branch : Branch
+    parameter : float
+
+    Returns
+    -------
+    tuple of Orbit or None
+        One for each of :attr:`Branch.sheets`; None where that has no such value, or the motion nearest to it leads to
+        none, as may be next to a fold.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument.
+    """
+    if not isinstance(branch, Branch):
+        raise TypeError(f"branch must be a Branch, got {named(branch)}")
+    value = finite("parameter", parameter)
+    return tuple(_orbit_at(systems, sheet, value) for sheet in branch.sheets)
+
+
+def _orbit_at(systems: Systems, sheet: Branch, parameter: float) -> Orbit | None:
+    if not sheet.parameters.min() <= parameter <= sheet.parameters.max():
+        return None
+    nearest = sheet.orbits[int(np.abs(sheet.parameters - parameter).argmin())]
+    try:
+        return periodic_orbit(systems(parameter), nearest.periods, nearest, nearest.panels)
+    except ArithmeticError:
+        return None
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import fsolve
 
 from facegear.floquet.contact_panels import Panels
-from facegear.floquet.continuation import Following, Special, doubled, followed
+from facegear.floquet.continuation import Following, Special, doubled, followed, orbits_at
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.orbits import periodic_orbit
 from facegear.floquet.transients import settled
@@ -57,6 +57,19 @@ def test_folds_in_closed_form(resonance):
         truth = fsolve(equations, guess, xtol=1e-11)
         assert point.parameter == pytest.approx(truth[2], abs=1e-8)
         np.testing.assert_allclose(point.orbit.start, truth[:2], atol=1e-5)
+
+
+def test_three_motions_at_one_frequency(resonance):
+    """Between the folds: one with contact lost, one between, one that strikes the back flank."""
+    orbits = orbits_at(gear_pair, resonance, 0.46)
+    assert [orbit.is_stable for orbit in orbits] == [True, False, True]
+    exact = ClosedForm(0.46)
+    for orbit in orbits:
+        end, crossings = exact.after(*orbit.start, TURN / 0.46)
+        np.testing.assert_allclose(end, orbit.start, atol=1e-9)
+        assert crossings == len(orbit.pattern.crossings)
+    assert [len(orbit.pattern.crossings) for orbit in orbits] == [2, 4, 4]
+    assert [orbit is None for orbit in orbits_at(gear_pair, resonance, 1.2)] == [False, True, True]
 
 
 def test_every_motion_is_one(resonance):
@@ -124,15 +137,16 @@ def test_says_where_and_why_it_is_stuck():
     def torn(frequency):
         return gear_pair(frequency, mean=0.1 if frequency > 1.2 else 0.2)
 
-    branch = followed(torn, 1.5, periodic_orbit(torn(1.5)), 0.4, 1.5, direction=-1.0)
+    few = Following(longest_arc=0.3)
+    branch = followed(torn, 1.3, periodic_orbit(torn(1.3)), 0.4, 1.5, direction=-1.0, following=few)
     assert branch.ended.startswith("stuck at 1.2")
     assert branch.parameters[-1] == pytest.approx(1.2, abs=1e-4)
 
 
 def test_ends_where_the_motion_has_grown():
-    few = Following(largest=1.5)
-    branch = followed(gear_pair, 1.5, periodic_orbit(gear_pair(1.5)), 0.4, 1.5, direction=-1.0, following=few)
-    assert "the motion is 1.5 times as large" in branch.ended
+    few = Following(largest=1.2, longest_arc=0.3)
+    branch = followed(gear_pair, 1.0, periodic_orbit(gear_pair(1.0)), 0.4, 1.5, direction=-1.0, following=few)
+    assert "the motion is 1.2 times as large" in branch.ended
 
 
 ORBIT = periodic_orbit(gear_pair(1.5))
@@ -155,6 +169,7 @@ ORBIT = periodic_orbit(gear_pair(1.5))
             "must be a ClearanceSystem",
         ),
         (lambda: doubled(gear_pair, Special("fold", 1.5, ORBIT), 0.4, 1.5), ValueError, 'of kind "flip"'),
+        (lambda: orbits_at(gear_pair, ORBIT, 1.5), TypeError, "branch must be a Branch"),
         (lambda: Following(longest_arc=2.0), ValueError, "longest_arc must lie in"),
         (lambda: Following(most=1), ValueError, "most must be at least 2"),
         (lambda: Following(largest=0.0), ValueError, "largest must be greater than 0"),
