@@ -46,6 +46,8 @@ _FIRST_ARC, _ONTO_BRANCH = 1e-3, 1e-3
 _STRAIGHT = 0.9
 # Way from the tangent, over the arc, at which another family may have been met.
 _ASIDE = 0.5
+# Distance of the ends of panels, in periods, that a derivative along them may have.
+_ALIKE = 1e-3
 # Part of the parameter in a tangent that is no rounding.
 _VERTICAL = 1e-6
 
@@ -408,6 +410,14 @@ def _slope(setting: _Setting, step: Step, parameter: float) -> _Slope:
     return _Slope((other.whole - step.along.whole) / change, Step(other, step.base), step, change)
 
 
+def _reached(setting: _Setting, point: _Point) -> FloatArray:
+    """Differentiate the displacements of the loads by the parameter, at the places where the point has them."""
+    here, there = (step.along.pattern.edges for step in (point.step, point.slope.step))
+    alike = here.size == there.size and float(np.abs(here - there).max()) < _ALIKE
+    slope = point.slope if alike else _slope(setting, point.step, point.parameter)
+    return slope.reached(point.state)
+
+
 def _bordered(
     setting: _Setting, step: Step, slope: _Slope, state: FloatArray, tangent: FloatArray, right: FloatArray
 ) -> FloatArray:
@@ -451,7 +461,7 @@ def _corrected(
     moved = setting.unscaled(point.tangent[:n])
     along = point.step.motion(moved, 0.0)
     rate = point.tangent[n] * setting.span
-    further = arc * (along.reached + rate * point.slope.reached(point.state))
+    further = arc * (along.reached + rate * _reached(setting, point))
     pattern, _ = point.step.pattern(point.motion, further)
     state = point.state + arc * moved
     parameter = point.parameter + arc * rate if bound is None else bound

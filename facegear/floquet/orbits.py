@@ -35,8 +35,9 @@ from facegear.support.types import ComplexArray, FloatArray
 _SETTLED = 1e-9
 # Distance from the clearance, over the largest displacement, that a wrong contact may have.
 _CONTACT = 1e-10
-# Steps of Newton's method, and how many of them are whole; later ones go half the way.
-_MOST_STEPS, _WHOLE_STEPS = 60, 8
+# What part of the way steps of Newton's method go from which step on, and after how many it is given up.
+_PARTS = ((0, 1.0), (8, 0.5), (32, 0.25))
+_MOST_STEPS = 100
 # Change of the motion below which steps are whole.
 _NEAR = 0.02
 # A spectral radius beyond 1 by more than this is unstable and no rounding.
@@ -274,7 +275,7 @@ def _settled(
         if change < _SETTLED and mismatch < _CONTACT:
             return step.orbit(system, count, motion)
         # Whole steps may go to and fro between two patterns for ever: then part of the way, until the end is near.
-        part = 1.0 if number < _WHOLE_STEPS or change < _NEAR else 0.5
+        part = 1.0 if change < _NEAR else [part for start, part in _PARTS if start <= number][-1]
         if part == 1.0 or before is None:
             before, pattern = motion.series, found
         else:

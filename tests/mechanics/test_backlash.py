@@ -222,3 +222,18 @@ def test_other_contacts():
     assert len(system.sides) == 2
     orbit = periodic_orbit(system)
     assert orbit.in_contact[1] == 0.0
+
+
+def test_a_torus_is_the_border_of_a_combination_tongue():
+    model = Backlash(FIGURES["7.12b"].model(), torque=100.0, gap=5e-5)
+    low, high = rad_per_s(780.0), rad_per_s(840.0)
+    branch = followed(model.system, high, periodic_orbit(model.system(high)), low, high, direction=-1.0)
+    (torus,) = branch.special
+    assert torus.kind == "torus"
+    border = brentq(
+        lambda speed: np.abs(multipliers(model.pressed(speed))).max() - 1.0, low, high, xtol=1e-11
+    )
+    assert rpm(torus.parameter) == pytest.approx(rpm(border), abs=1e-4)
+    pair = torus.orbit.multipliers[:2]
+    np.testing.assert_allclose(np.abs(pair), 1.0, atol=1e-7)
+    assert np.abs(pair.imag).min() > 0.01
