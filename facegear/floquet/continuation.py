@@ -48,6 +48,8 @@ _STRAIGHT = 0.9
 _ASIDE = 0.5
 # Distance of the ends of panels, in periods, that a derivative along them may have.
 _ALIKE = 1e-3
+# Motions of a family from which another one nearby is looked for.
+_NEIGHBOURS = 3
 # Part of the parameter in a tangent that is no rounding.
 _VERTICAL = 1e-6
 
@@ -283,11 +285,21 @@ def orbits_at(systems: Systems, branch: Branch, parameter: float) -> tuple[Orbit
 def _orbit_at(systems: Systems, sheet: Branch, parameter: float) -> Orbit | None:
     if not sheet.parameters.min() <= parameter <= sheet.parameters.max():
         return None
-    nearest = sheet.orbits[int(np.abs(sheet.parameters - parameter).argmin())]
-    try:
-        return periodic_orbit(systems(parameter), nearest.periods, nearest, nearest.panels)
-    except ArithmeticError:
-        return None
+    # Which side of a fold a motion is on: the sign of det(I − Φ), which only a fold changes.
+    middle = sheet.orbits[len(sheet.orbits) // 2]
+    for place in np.argsort(np.abs(sheet.parameters - parameter))[:_NEIGHBOURS].tolist():
+        guess = sheet.orbits[place]
+        try:
+            found = periodic_orbit(systems(parameter), guess.periods, guess, guess.panels)
+        except ArithmeticError:
+            continue
+        if _side(found) * _side(middle) > 0.0:
+            return found
+    return None
+
+
+def _side(orbit: Orbit) -> float:
+    return float(np.prod(1.0 - orbit.multipliers).real)
 
 
 @dataclass(frozen=True, eq=False)

@@ -70,6 +70,11 @@ def test_three_motions_at_one_frequency(resonance):
         assert crossings == len(orbit.pattern.crossings)
     assert [len(orbit.pattern.crossings) for orbit in orbits] == [2, 4, 4]
     assert [orbit is None for orbit in orbits_at(gear_pair, resonance, 1.2)] == [False, True, True]
+    # Close to a fold, one on each side of it.
+    lost, between, struck = orbits_at(gear_pair, resonance, resonance.special[0].parameter + 1e-4)
+    assert lost.is_stable
+    assert not between.is_stable
+    assert struck.is_stable
 
 
 def test_every_motion_is_one(resonance):
