@@ -236,6 +236,8 @@ def periodic_orbit(
     require_clearances(system)
     count = integer_at_least("periods", periods, 1)
     chosen = Panels() if panels is None else panels
+    if not isinstance(chosen, Panels):
+        raise TypeError(f"panels must be a Panels or None, got {named(panels)}")
     whole = system.repeated(count)
     return _settled(system, count, whole, _first_pattern(whole, count, guess, chosen), chosen)
 

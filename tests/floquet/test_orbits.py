@@ -334,6 +334,7 @@ LINEAR = meshing().system
             ValueError,
             r"guess must be a state of shape \(4,\)",
         ),
+        (lambda: periodic_orbit(meshing(), panels=12), TypeError, "panels must be a Panels"),
         (lambda: Panels(nodes=3), ValueError, "nodes must be"),
         (lambda: Panels(angle=0.0), ValueError, "angle must lie in"),
         (lambda: settled(meshing(), np.zeros(4), 3), ValueError, r"states must have shape \(m, 4\)"),
