@@ -478,6 +478,7 @@ def _corrected(
     state = point.state + arc * moved
     parameter = point.parameter + arc * rate if bound is None else bound
     slope: _Slope | None = None
+    largest = np.inf
     for number in range(1, _MOST_STEPS + 1):
         if not setting.low <= parameter <= setting.high:
             raise _LeftError(f"the range is left at {parameter:.9g}")
@@ -488,8 +489,11 @@ def _corrected(
         gone = np.append(setting.scaled(state - point.state), (parameter - point.parameter) / setting.span)
         right = np.append(-setting.scaled(left), target - row @ gone)
         change = _bordered(setting, step, slope, state, row, right)
-        if not np.isfinite(change).all() or np.abs(change).max() > 10.0:
-            raise ArithmeticError("Newton's method left the neighbourhood")
+        last, largest = largest, float(np.abs(change).max())
+        if not np.isfinite(change).all() or largest > 10.0 or (number > _USUAL_STEPS and largest > last):
+            raise ArithmeticError(
+                f"Newton's method leads away: its last step changed the motion by {largest:.2g}"
+            )
         state = state + setting.unscaled(change[:n])
         motion = step.motion(state)
         gone_on = float(change[n]) * setting.span

@@ -101,12 +101,3 @@ class Drive:
                     pressed[which] = not pressed[which]
                     count += 1
         return state, count
-
-    def jacobian(self, state, periods=1, scale=None):
-        sizes = 1e-6 * (np.abs(state) if scale is None else scale)
-        columns = []
-        for number, size in enumerate(sizes):
-            step = size * np.eye(state.size)[number]
-            ahead, behind = (self.flown(state + sign * step, periods)[0] for sign in (1.0, -1.0))
-            columns.append((ahead - behind) / (2.0 * size))
-        return np.array(columns).T
