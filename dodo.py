@@ -55,6 +55,7 @@ LONGEST = (
     "06_in_plane_force",
     "07_torsional",
     "your_drive",
+    "08_torsional",
 )
 IN_ORDER = [
     *(path for stem in LONGEST for path in NOTEBOOKS if path.stem == stem),

@@ -1,0 +1,185 @@
+"""Arrays of the section on backlash, with units and tolerances."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from facegear.floquet.continuation import Branch, Following, doubled, followed, orbits_at
+from facegear.floquet.orbits import Orbit, periodic_orbit
+from facegear.floquet.transients import settled
+from facegear.mechanics.backlash import Backlash
+from facegear.support.labelled import text, variable
+from facegear.support.parameters import rad_per_s, rpm
+
+
+def families(model: Backlash, lowest_rpm: float, highest_rpm: float, inner_rpm: float) -> dict[str, Branch]:
+    """Find families of motions over speed: from the highest, both ways from one between, and two periods of flips."""
+    low, high, inner = (float(rad_per_s(x)) for x in (lowest_rpm, highest_rpm, inner_rpm))
+    bounded = Following(largest=30.0)
+    start = periodic_orbit(model.system(high))
+    found = {"from above": followed(model.system, high, start, low, high, direction=-1.0, following=bounded)}
+    start = periodic_orbit(model.system(inner))
+    for name, sense in (("from within, down", -1.0), ("from within, up", 1.0)):
+        found[name] = followed(model.system, inner, start, low, high, direction=sense, following=bounded)
+    flips = [x for x in found["from above"].special if x.kind == "flip" and x.orbit.periods == 1]
+    for flip in flips:
+        found[f"two periods, {rpm(flip.parameter):.0f} rpm"] = doubled(
+            model.system, flip, low, high, following=bounded
+        )
+    return found
+
+
+def statistics(model: Backlash, orbit: Orbit) -> tuple[float, ...]:
+    """Mean, rms, lowest and highest mesh deformation [m]; 0 pressed, 1 parts, 2 strikes back; deformation at 0.
+
+    The last is the deformation as the period begins, which tells one motion from another and from no motion.
+    """
+
+    def deformation(x: np.ndarray) -> np.ndarray:
+        return model.deformation(orbit, x)
+
+    mean = float(orbit.response.mean(deformation))
+    square = float(orbit.response.mean(lambda x: (deformation(x) - mean) ** 2))
+    lowest, highest = (float(x) for x in orbit.response.extremes(deformation))
+    contact = 2.0 if model.strikes_back(orbit) else float(model.parts(orbit))
+    return mean, math.sqrt(square), lowest, highest, contact, float(deformation(np.zeros(1))[0])
+
+
+def response(
+    model: Backlash, branches: Mapping[str, Branch], speeds_rpm: ArrayLike, largest: float
+) -> xr.Dataset:
+    """Mesh deformation of every sheet of some families at given speeds; not a number where there is none.
+
+    Parameters
+    ----------
+    model : Backlash
+    branches : mapping of str to Branch
+    speeds_rpm : array_like
+    largest : float
+        Deformation above which motions are left out [m].
+    """
+    shown = np.asarray(speeds_rpm, dtype=float)
+    names, periods, rows = [], [], []
+    for name, branch in branches.items():
+        columns = [orbits_at(model.system, branch, float(rad_per_s(x))) for x in shown]
+        for sheet in zip(*columns, strict=True):
+            table = np.full((shown.size, 7), np.nan)
+            for place, orbit in enumerate(sheet):
+                if orbit is not None:
+                    values = statistics(model, orbit)
+                    if values[3] < largest:
+                        table[place] = (*values, float(orbit.is_stable))
+            if np.isfinite(table).any():
+                names.append(name)
+                periods.append(branch.orbits[0].periods)
+                rows.append(table)
+    stacked = np.moveaxis(np.array(rows), -1, 0)
+    words = ("mean", "rms", "lowest", "highest")
+    sizes = {
+        word: variable(
+            ("sheet", "speed"), part, f"Mesh deformation, {word}", units="m", rtol=1e-6, atol=1e-12
+        )
+        for word, part in zip(words, stacked[:4], strict=True)
+    }
+    contact = variable(
+        ("sheet", "speed"), stacked[4], "0 pressed, 1 parts, 2 strikes back", units="1", atol=0.1
+    )
+    sizes["entering"] = variable(
+        ("sheet", "speed"), stacked[5], "Mesh deformation as a pair enters", units="m", rtol=1e-6, atol=1e-12
+    )
+    stable = variable(("sheet", "speed"), stacked[6], "1 where stable", units="1", atol=0.1)
+    coordinates = {
+        "sheet": np.arange(len(names)),
+        "speed": shown,
+        "family": text("sheet", names, "Family"),
+        "periods": ("sheet", periods),
+    }
+    return xr.Dataset({**sizes, "contact": contact, "stable": stable}, coordinates)
+
+
+def special(branches: Mapping[str, Branch]) -> list[tuple[str, str, int, float]]:
+    """Family, kind, periods and speed [rpm] of every special point."""
+    return [
+        (name, point.kind, point.orbit.periods, float(rpm(point.parameter)))
+        for name, branch in branches.items()
+        for point in branch.special
+    ]
+
+
+def basins(
+    model: Backlash, speed_rpm: float, spread: float, count: int, periods: int, seed: int
+) -> xr.Dataset:
+    """Where motions from states drawn about the pressed one end: lowest and highest deformation of the last periods.
+
+    Parameters
+    ----------
+    model : Backlash
+    speed_rpm : float
+    spread : float
+        Half the width of the box of initial states, in sizes of the pressed motion about its mean.
+    count, periods, seed : int
+    """
+    system = model.system(float(rad_per_s(speed_rpm)))
+    pressed = periodic_orbit(system)
+    states = pressed.state(np.linspace(0.0, 1.0, 200))
+    box = np.ptp(states, axis=0) / 2.0
+    drawn = pressed.start + spread * box * np.random.default_rng(seed).uniform(-1.0, 1.0, (count, box.size))
+    with np.errstate(over="ignore", invalid="ignore"):
+        ends = settled(system, drawn, periods, kept=12)
+    drive = model.torsional.drive
+    deformation = drive.base_radius * (ends[..., 0] - drive.gear_ratio * ends[..., 1])
+    return xr.Dataset(
+        {
+            "lowest": variable(
+                ("state",), deformation.min(axis=0), "Lowest deformation", units="m", rtol=1.0
+            ),
+            "highest": variable(
+                ("state",), deformation.max(axis=0), "Highest deformation", units="m", rtol=1.0
+            ),
+        },
+        {"state": np.arange(count)},
+        {"speed_rpm": speed_rpm},
+    )
+
+
+def shares(data: xr.Dataset, bounds: Sequence[float]) -> list[tuple[int, float, float]]:
+    """Count states whose highest deformation lies between bounds, with Wilson's interval of 95 % for the share."""
+    highest = np.nan_to_num(np.abs(data.highest.values), nan=np.inf)
+    counts, _ = np.histogram(np.minimum(highest, 1e300), [0.0, *bounds, 1e301])
+    total, z = highest.size, 1.96
+    rows = []
+    for count in counts.tolist():
+        share = count / total
+        middle = (share + z**2 / (2 * total)) / (1 + z**2 / total)
+        half = z * math.sqrt(share * (1 - share) / total + z**2 / (4 * total**2)) / (1 + z**2 / total)
+        rows.append((count, middle - half, middle + half))
+    return rows
+
+
+def large_motions(model: Backlash, speeds_rpm: ArrayLike, periods: int, seed: int = 0) -> xr.Dataset:
+    """Growth a mesh period of motions beside which gap and torque are nothing."""
+    grown = []
+    size = 1e6 * np.abs(periodic_orbit(model.system(float(rad_per_s(800.0)))).start)
+    for speed in np.asarray(speeds_rpm, dtype=float):
+        system = model.system(float(rad_per_s(speed)))
+        drawn = size * np.random.default_rng(seed).uniform(-1.0, 1.0, (8, size.size))
+        ends = settled(system, drawn, periods, kept=periods // 2 + 1)
+        sizes = np.linalg.norm(ends / size, axis=2)
+        grown.append(np.log(sizes[-1] / sizes[0]).max() / (periods // 2))
+    growth = variable(("speed",), grown, "Growth a mesh period", units="1", atol=0.02)
+    return xr.Dataset({"growth": growth}, {"speed": np.asarray(speeds_rpm, dtype=float)})
+
+
+def large_runs(data: xr.Dataset, least: float) -> list[tuple[float, float]]:
+    """List intervals of speed [rpm] in which the motions of :func:`large_motions` grow by more than `least` a period.
+
+    To the spacing of the speeds. An estimate from some periods scatters, for motions beat.
+    """
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], data.growth.values > least, [0]])))
+    speed = data.speed.values
+    return [(float(speed[i]), float(speed[j - 1])) for i, j in zip(edges[::2], edges[1::2], strict=True)]

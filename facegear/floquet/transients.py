@@ -1,0 +1,170 @@
+"""Where motions of systems with clearances end: many at once, by steps of the classical Runge-Kutta method.
+
+What is found is a guess for :func:`facegear.floquet.orbits.periodic_orbit`, or which of several motions attracts which
+initial states. Steps end at the breakpoints of the system, not at contacts: errors at these are of second order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from facegear.floquet.clearance import ClearanceSystem
+from facegear.floquet.contact_panels import Pattern, merged
+from facegear.floquet.periodic import weighted_shape
+from facegear.floquet.piecewise import Side
+from facegear.support.parameters import finite_array, integer_at_least
+from facegear.support.types import FloatArray
+
+# Largest angle of the fastest natural motion in a step [rad].
+_ANGLE = 0.2
+
+
+@dataclass(frozen=True, eq=False)
+class _Field:
+    """Accelerations of many states (m, 2n) at once, at the start, the middle and the end of each step.
+
+    Attributes
+    ----------
+    edges : array, shape (S + 1,)
+    lengths : array, shape (S,)
+        Of the steps [s].
+    reading : array, shape (S, 3, 2n, 2p + n)
+        States to side · u and k u + c u̇ of each load, and to what shafts do.
+    known : array, shape (S, 3, 2p + n)
+        What is added to that: clearances, transmission errors, forces.
+    row : array, shape (S, 3, p, n)
+        Forces of the loads to accelerations.
+    """
+
+    edges: FloatArray
+    lengths: FloatArray
+    reading: FloatArray
+    known: FloatArray
+    row: FloatArray
+
+    @classmethod
+    def of(cls, system: ClearanceSystem) -> _Field:
+        inner, n, p = system.system, system.size, len(system.sides)
+        edges = _step_edges(system)
+        places: tuple[tuple[FloatArray, Side], ...] = (
+            (edges[:-1], "right"),
+            ((edges[:-1] + edges[1:]) / 2.0, "right"),
+            (edges[1:], "left"),
+        )
+        reading, known = (
+            np.zeros((edges.size - 1, 3, 2 * n, 2 * p + n)),
+            np.zeros((edges.size - 1, 3, 2 * p + n)),
+        )
+        row = np.zeros((edges.size - 1, 3, p, n))
+        shafts = np.concatenate([inner.stiffness, inner.damping], axis=1).T @ system.inverse_mass.T
+        reading[..., 2 * p :] = -shafts
+        for stage, (x, side) in enumerate(places):
+            if inner.force is not None:
+                known[:, stage, 2 * p :] = inner.force(x, side) @ system.inverse_mass.T
+            for number, load in enumerate(inner.loads):
+                phi, toward = load.shape(x, side), system.sides[number]
+                edge, edge_rate = np.full(x.size, toward * system.clearances[number]), np.zeros(x.size)
+                if load.transmission_error is not None:
+                    edge = edge + load.transmission_error(x, side)[:, 0]
+                    edge_rate = load.transmission_error.derivative()(x, side)[:, 0] / inner.period
+                row[:, stage, number] = weighted_shape(load, x, side) @ system.inverse_mass.T
+                reading[:, stage, :n, number] = toward * phi
+                known[:, stage, number] = -toward * edge if toward else 1.0
+                reading[:, stage, :n, p + number] = load.stiffness * phi
+                if load.rate == "total":
+                    reading[:, stage, :n, p + number] += load.damping * load.slope(x, side) / inner.period
+                reading[:, stage, n:, p + number] = load.damping * phi
+                known[:, stage, p + number] = -load.stiffness * edge - load.damping * edge_rate
+        return cls(edges, np.diff(edges) * inner.period, reading, known, row)
+
+    def into(self, step: int, states: FloatArray) -> FloatArray:
+        """How far loads are in contact in the middle of a step, (m, p)."""
+        count = self.row.shape[2]
+        return np.asarray((states @ self.reading[step, 1] + self.known[step, 1])[:, :count])
+
+    def rate(self, step: int, stage: int, states: FloatArray) -> FloatArray:
+        """Rates of the states."""
+        count, n = self.row.shape[2:]
+        read = states @ self.reading[step, stage] + self.known[step, stage]
+        forces = np.where(read[:, :count] > 0.0, read[:, count : 2 * count], 0.0)
+        rates = np.empty_like(states)
+        rates[:, :n] = states[:, n:]
+        rates[:, n:] = read[:, 2 * count :] - forces @ self.row[step, stage]
+        return rates
+
+    def advanced(self, step: int, states: FloatArray) -> FloatArray:
+        """States after a step."""
+        h = float(self.lengths[step])
+        first = self.rate(step, 0, states)
+        second = self.rate(step, 1, states + h / 2.0 * first)
+        third = self.rate(step, 1, states + h / 2.0 * second)
+        last = self.rate(step, 2, states + h * third)
+        return np.asarray(states + h / 6.0 * (first + 2.0 * (second + third) + last))
+
+
+def _step_edges(system: ClearanceSystem) -> FloatArray:
+    """Return the ends of steps, breakpoints among them, from 0 to 1."""
+    ends = np.append(system.system.breakpoints, 1.0)
+    turns = system.fastest * system.period / _ANGLE
+    parts = [
+        np.linspace(start, end, max(2, int(np.ceil(turns * (end - start)))) + 1)[:-1]
+        for start, end in pairwise(ends)
+    ]
+    return np.append(np.concatenate(parts), 1.0)
+
+
+def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int = 1) -> FloatArray:
+    """Follow many motions for some periods.
+
+    Parameters
+    ----------
+    system : ClearanceSystem
+    states : array_like, shape (m, 2n)
+        States (q, q̇) at t = 0.
+    periods : int
+        How many periods to follow them.
+    kept : int
+        Of how many periods, the last ones, the states are returned.
+
+    Returns
+    -------
+    array, shape (kept, m, 2n)
+        States at the end of each of the last periods.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument.
+    """
+    count = integer_at_least("periods", periods, 1)
+    kept = integer_at_least("kept", kept, 1)
+    start = finite_array("states", states)
+    n = system.size
+    if start.ndim != 2 or start.shape[1] != 2 * n:
+        raise ValueError(f"states must have shape (m, {2 * n}), got shape {start.shape}")
+    field, found = _Field.of(system), []
+    for number in range(count):
+        for step in range(field.lengths.size):
+            start = field.advanced(step, start)
+        if number >= count - kept:
+            found.append(start)
+    return np.array(found)
+
+
+def contacts_along(system: ClearanceSystem, state: FloatArray) -> Pattern:
+    """Contacts of the motion from a state along one period, to the accuracy of the steps."""
+    field, states, rows = _Field.of(system), state[np.newaxis], []
+    there = np.abs(field.row[:, 1]).max(axis=-1) > 0.0
+    for step in range(field.lengths.size):
+        start, states = states, field.advanced(step, states)
+        rows.append(field.into(step, (start + states) / 2.0)[0] > 0.0)
+    pressed: NDArray[np.bool_] = np.array(rows) & there
+    changes = np.flatnonzero((pressed[1:] != pressed[:-1]).any(axis=1)) + 1
+    edges = merged(np.append(system.system.breakpoints, 1.0), field.edges[changes])
+    middles = (edges[:-1] + edges[1:]) / 2.0
+    found = pressed[np.searchsorted(field.edges, middles, side="right") - 1]
+    return Pattern(edges, found)
