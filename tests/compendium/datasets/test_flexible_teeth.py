@@ -39,7 +39,9 @@ def test_tongues_stand_under_the_names_of_their_models():
     assert data.model_name.values.tolist() == ["rigid", "flexible"]
     for section, one in enumerate(found):
         lower = data.lower.values[section]
-        assert lower[~np.isnan(lower)].tolist() == pytest.approx([float(fg.rpm(tongue.lower)) for tongue in one])
+        assert lower[~np.isnan(lower)].tolist() == pytest.approx(
+            [float(fg.rpm(tongue.lower)) for tongue in one]
+        )
     assert any(found)
 
 
