@@ -16,6 +16,9 @@ from facegear.mechanics.backlash import Backlash
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s, rpm
 
+# How near a speed may be to where motions meet [rpm].
+_CLEAR = 3.0
+
 
 def families(model: Backlash, lowest_rpm: float, highest_rpm: float, inner_rpm: float) -> dict[str, Branch]:
     """Find families of motions over speed: from the highest, both ways from one between, and two periods of flips."""
@@ -55,6 +58,9 @@ def response(
 ) -> xr.Dataset:
     """Mesh deformation of every sheet of some families at given speeds; not a number where there is none.
 
+    None is given within 3 rpm of a fold or flip of any family, where motions that are about to meet are found by
+    Newton's method on one machine and missed on another.
+
     Parameters
     ----------
     model : Backlash
@@ -64,12 +70,14 @@ def response(
         Deformation above which motions are left out [m].
     """
     shown = np.asarray(speeds_rpm, dtype=float)
+    meet = np.array([speed for *_, speed in special(branches)])
+    clear = np.abs(shown[:, np.newaxis] - meet).min(axis=1, initial=np.inf) > _CLEAR
     names, periods, rows = [], [], []
     for name, branch in branches.items():
-        columns = [orbits_at(model.system, branch, float(rad_per_s(x))) for x in shown]
+        columns = [orbits_at(model.system, branch, float(rad_per_s(x))) for x in shown[clear]]
         for sheet in zip(*columns, strict=True):
             table = np.full((shown.size, 7), np.nan)
-            for place, orbit in enumerate(sheet):
+            for place, orbit in zip(np.flatnonzero(clear), sheet, strict=True):
                 if orbit is not None:
                     values = statistics(model, orbit)
                     if values[3] < largest:
