@@ -330,7 +330,7 @@ def _built(found: _Found) -> DriveFile:
         )
         build = partial(teeth.under, body, load, angles, next(iter(contacts.values())))
     transverse = _by_model(found, "pinions" if teeth is None else "teeth", build)
-    _by_model(found, "body", lambda: transverse.bearing_stiffness)
+    _by_model(found, "material", lambda: _by_model(found, "body", lambda: transverse.bearing_stiffness))
     requirements = _requirements(found, body)
     torsional = None
     if (gearbox := values["gearbox"]) is not None:

@@ -165,9 +165,10 @@ class PinionsOnDisk(ABC):
         reference = reference_stiffness(self.body)
         if reference <= 0.0:
             raise ValueError(
-                "thickness_ratio must be larger, or the material stiffer, for bearings to be measured by the disk's "
-                f"own stiffness (4-17): averaged up to {REFERENCE_SPEED:.4g} rad/s, beyond a critical speed, that "
-                f"is {reference:.3g} N/m, got {self.body.thickness_ratio!r}"
+                "thickness_ratio must be larger, or the material stiffer (youngs_modulus) or lighter (density), for "
+                "bearings to be measured by the disk's own stiffness (4-17): averaged up to "
+                f"{REFERENCE_SPEED:.4g} rad/s, beyond a critical speed, that is {reference:.3g} N/m, got "
+                f"{self.body.thickness_ratio!r}"
             )
         return self.load.stiffness * reference
 

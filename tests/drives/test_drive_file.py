@@ -636,3 +636,9 @@ def test_a_body_too_soft_to_measure_bearings_by_is_refused():
     soft = yaml.safe_load(GEARBOX) | {"material": {"youngs_modulus_GPa": 0.11547819846894582}}
     with pytest.raises(DriveFileError, match="thickness_ratio must be larger, or the material stiffer"):
         parse_drive(yaml.safe_dump(soft))
+
+
+def test_of_a_body_too_soft_each_key_that_could_help_is_named():
+    told = refusal(yaml.safe_dump(yaml.safe_load(BOTH_FACES) | {"material": {"youngs_modulus_GPa": 1}}))
+    keys = ("body.thickness_ratio", "material.youngs_modulus_GPa", "material.density_kg_per_m3")
+    assert all(key in told for key in keys)
