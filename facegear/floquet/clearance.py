@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +104,19 @@ class ClearanceSystem:
         stiffness = self.system.stiffness_matrix(middles)
         values = np.linalg.eigvals(np.linalg.solve(self.system.mass, stiffness))
         return float(np.sqrt(np.abs(values).max()))
+
+    def divided(self, angle: float, fewest: int = 1) -> FloatArray:
+        """Return the ends of parts of the period, breakpoints among them, from 0 to 1.
+
+        Along each the fastest natural motion turns by an angle [rad] at most; a smooth piece has `fewest` or more.
+        """
+        ends = np.append(self.system.breakpoints, 1.0)
+        turns = self.fastest * self.period / angle
+        parts = [
+            np.linspace(start, end, max(fewest, int(np.ceil(turns * (end - start) - 1e-9))) + 1)[:-1]
+            for start, end in pairwise(ends)
+        ]
+        return np.append(np.concatenate(parts), 1.0)
 
     @cached_property
     def inverse_mass(self) -> FloatArray:

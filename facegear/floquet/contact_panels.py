@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
@@ -71,13 +70,7 @@ class Panels:
 
     def edges(self, system: ClearanceSystem) -> FloatArray:
         """Return the ends of panels without regard to contacts, breakpoints among them, from 0 to 1."""
-        ends = np.append(system.system.breakpoints, 1.0)
-        turns = system.fastest * system.period / self.angle
-        parts = [
-            np.linspace(start, end, max(1, int(np.ceil(turns * (end - start) - 1e-9))) + 1)[:-1]
-            for start, end in pairwise(ends)
-        ]
-        return np.append(np.concatenate(parts), 1.0)
+        return system.divided(self.angle)
 
 
 @dataclass(frozen=True, eq=False)
@@ -311,19 +304,25 @@ def _with_ends(function: PiecewiseChebyshev, fractions: FloatArray, edges: Float
     return np.concatenate([first, function(edges[1:], "left")[:, np.newaxis]], axis=1)
 
 
+def struck(system: ClearanceSystem, number: int, at: float, ratio: float) -> tuple[FloatArray, FloatArray]:
+    """Shape φ of a load at an instant, and M⁻¹ w φ c times a ratio: −(push φᵀ) is the saltation of its contact."""
+    load = system.system.loads[number]
+    phi = load.shape(at)
+    weight = 1.0 if load.weight is None else load.weight(at)[0]
+    return phi, system.inverse_mass @ phi * (weight * load.damping * ratio)
+
+
 def _jumps(system: ClearanceSystem, pattern: Pattern) -> FloatArray:
     """Return what Newton's method makes of contacts made or lost at the starts of panels, (P, 2n + 1, 2n + 1)."""
     n = system.size
     jumps = np.broadcast_to(np.eye(2 * n + 1), (len(pattern.pressed), 2 * n + 1, 2 * n + 1)).copy()
     for panel, number, ratio in pattern.crossings:
-        load, at = system.system.loads[number], pattern.edges[panel]
+        load, at = system.system.loads[number], float(pattern.edges[panel])
         if load.damping == 0.0:
             continue
-        phi = load.shape(at)
-        weight = 1.0 if load.weight is None else load.weight(at)[0]
+        phi, push = struck(system, number, at, ratio)
         error = 0.0 if load.transmission_error is None else load.transmission_error(at)[0]
         beyond = error + system.sides[number] * system.clearances[number]
-        push = system.inverse_mass @ phi * (weight * load.damping * ratio)
         jumps[panel, n : 2 * n] -= np.outer(push, np.concatenate([phi, np.zeros(n), [-beyond]]))
     return jumps
 

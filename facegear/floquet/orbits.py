@@ -8,7 +8,7 @@ has the Floquet multipliers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -23,6 +23,7 @@ from facegear.floquet.contact_panels import (
     Pattern,
     found_pattern,
     linearised,
+    struck,
 )
 from facegear.floquet.periodic import PeriodicSystem, StateJump, named
 from facegear.floquet.piecewise import PiecewiseChebyshev, Side
@@ -108,18 +109,19 @@ class Orbit:
     @cached_property
     def linear(self) -> PeriodicSystem:
         """Linear system over k periods with the contacts and saltations of the motion: its multipliers are these."""
-        whole = self.system.repeated(self.periods)
-        n, jumps = whole.size, []
-        inner = whole.pressed(self.pattern.edges, self.pattern.pressed)
+        whole, jumps = self.system.repeated(self.periods), []
+        n = whole.size
         for panel, number, ratio in self.pattern.crossings:
-            load, at = whole.system.loads[number], float(self.pattern.edges[panel])
-            phi, matrix = load.shape(at), np.eye(2 * n)
-            weight = 1.0 if load.weight is None else load.weight(at)[0]
-            matrix[n:, :n] = -np.outer(whole.inverse_mass @ phi, phi) * (ratio * weight * load.damping)
+            at, matrix = float(self.pattern.edges[panel]), np.eye(2 * n)
+            phi, push = struck(whole, number, at, ratio)
+            matrix[n:, :n] = -np.outer(push, phi)
             jumps.append(StateJump(at, matrix))
-        return PeriodicSystem(
-            inner.mass, inner.damping, inner.stiffness, inner.loads, inner.period, inner.force, tuple(jumps)
-        )
+        return replace(self._pressed, jumps=tuple(jumps))
+
+    @cached_property
+    def _pressed(self) -> PeriodicSystem:
+        """Linear system over k periods with the contacts of the motion."""
+        return self.system.repeated(self.periods).pressed(self.pattern.edges, self.pattern.pressed)
 
     @cached_property
     def response(self) -> SteadyResponse:
@@ -127,11 +129,12 @@ class Orbit:
 
         Displacements of the loads are counted from their clearance there.
         """
-        whole = self.system.repeated(self.periods)
-        pressed = whole.pressed(self.pattern.edges, self.pattern.pressed)
         away = np.linalg.svd(np.eye(len(self.transition)) - self.transition, compute_uv=False)
         return SteadyResponse(
-            pressed, self.state, float(np.abs(self.multipliers[0])), float(away[0] / max(away[-1], 1e-300))
+            self._pressed,
+            self.state,
+            float(np.abs(self.multipliers[0])),
+            float(away[0] / max(away[-1], 1e-300)),
         )
 
 

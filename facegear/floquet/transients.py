@@ -7,7 +7,6 @@ initial states. Steps end at the breakpoints of the system, not at contacts: err
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,7 +48,7 @@ class _Field:
     @classmethod
     def of(cls, system: ClearanceSystem) -> _Field:
         inner, n, p = system.system, system.size, len(system.sides)
-        edges = _step_edges(system)
+        edges = system.divided(_ANGLE, fewest=2)
         places: tuple[tuple[FloatArray, Side], ...] = (
             (edges[:-1], "right"),
             ((edges[:-1] + edges[1:]) / 2.0, "right"),
@@ -104,17 +103,6 @@ class _Field:
         third = self.rate(step, 1, states + h / 2.0 * second)
         last = self.rate(step, 2, states + h * third)
         return np.asarray(states + h / 6.0 * (first + 2.0 * (second + third) + last))
-
-
-def _step_edges(system: ClearanceSystem) -> FloatArray:
-    """Return the ends of steps, breakpoints among them, from 0 to 1."""
-    ends = np.append(system.system.breakpoints, 1.0)
-    turns = system.fastest * system.period / _ANGLE
-    parts = [
-        np.linspace(start, end, max(2, int(np.ceil(turns * (end - start)))) + 1)[:-1]
-        for start, end in pairwise(ends)
-    ]
-    return np.append(np.concatenate(parts), 1.0)
 
 
 def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int = 1) -> FloatArray:
