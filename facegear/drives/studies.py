@@ -35,6 +35,29 @@ def _speed(highest_rpm: float) -> Quantity:
     )
 
 
+def _thickness(body: Body) -> Quantity:
+    here = body.thickness_ratio
+    return Quantity(
+        "thickness_ratio", "thickness h/a", 0.015, 0.09, here, 0.0005, parameter="body.thickness_ratio"
+    )
+
+
+def _bearing_stiffness(load: MeshLoad) -> Quantity:
+    return Quantity(
+        "stiffness", "bearing stiffness μ", 0.0, 2.0, load.stiffness, 0.05, parameter="load.stiffness"
+    )
+
+
+def _pinion_mass(load: MeshLoad, least: float) -> Quantity:
+    return Quantity("mass", "pinion mass τ", least, 2.0, load.mass, 0.05, parameter="load.mass")
+
+
+def _contact(settings: Settings, drive: Drive) -> Contact:
+    """Contact on the clock that the reader picks."""
+    swept = settings["contact_ratio"] == TRUE_SWEEP
+    return Contact(contact_ratio=drive.geometric_contact_ratio if swept else None)
+
+
 def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000.0) -> Study:
     """Transverse vibration of a whole drive: teeth, body, bearings, one to three pinions, power.
 
@@ -74,19 +97,9 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
         Quantity("pinion_teeth", "teeth of the pinion", 12, 60, drive.pinion_teeth, 1, whole=True),
         Quantity("gear_teeth", "teeth of the face gear", 40, 260, drive.gear_teeth, 1, whole=True),
         Quantity("module", "module [mm]", 1.0, 8.0, drive.module * 1e3, 0.025, unit=1e-3),
-        Quantity(
-            "thickness_ratio",
-            "thickness h/a",
-            0.015,
-            0.09,
-            body.thickness_ratio,
-            0.0005,
-            parameter="body.thickness_ratio",
-        ),
+        _thickness(body),
         Quantity("bore_radius", "radius of the bore [mm]", 10.0, 200.0, body.bore_radius * 1e3, 1.0, 1e-3),
-        Quantity(
-            "stiffness", "bearing stiffness μ", 0.0, 2.0, load.stiffness, 0.05, parameter="load.stiffness"
-        ),
+        _bearing_stiffness(load),
         Quantity(
             "damping",
             "bearing damping ζ [µs]",
@@ -97,7 +110,7 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
             unit=1e-6,
             parameter="load.damping",
         ),
-        Quantity("mass", "pinion mass τ", 0.0, 2.0, load.mass, 0.05, parameter="load.mass"),
+        _pinion_mass(load, 0.0),
         Choice("pinions", "number of pinions", ("1", "2", "3"), str(len(start.pinion_angles))),
         Quantity(
             "second_angle",
@@ -142,9 +155,7 @@ def _drive_model(settings: Settings) -> Model:
         body,
         MeshLoad(settings["stiffness"], settings["damping"], settings["mass"]),
         pinion_angles=angles,
-        contact=Contact(
-            contact_ratio=drive.geometric_contact_ratio if settings["contact_ratio"] == TRUE_SWEEP else None
-        ),
+        contact=_contact(settings, drive),
         force=DrivingForce(settings["power"], settings["highest_speed"] / drive.speed_ratio),
     )
 
@@ -301,24 +312,13 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
             1e-6,
             parameter="mesh_damping",
         ),
-        Quantity(
-            "thickness_ratio",
-            "thickness h/a",
-            0.015,
-            0.09,
-            body.thickness_ratio,
-            0.0005,
-            parameter="body.thickness_ratio",
-        ),
-        Quantity(
-            "stiffness", "bearing stiffness μ", 0.0, 2.0, load.stiffness, 0.05, parameter="load.stiffness"
-        ),
-        Quantity("mass", "pinion mass τ", 0.05, 2.0, load.mass, 0.05, parameter="load.mass"),
+        _thickness(body),
+        _bearing_stiffness(load),
+        _pinion_mass(load, 0.05),
     )
 
     def build(settings: Settings) -> Model:
         drive, pinions = body.drive, settings["pinions"]
-        ratio = drive.geometric_contact_ratio if settings["contact_ratio"] == TRUE_SWEEP else None
         teeth = FlexibleTeeth(
             settings["mesh_stiffness"],
             settings["mesh_damping"],
@@ -330,7 +330,7 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
             replace(body, thickness_ratio=settings["thickness_ratio"]),
             replace(load, stiffness=settings["stiffness"], mass=settings["mass"]),
             (0.0, settings["second_angle"]) if pinions in (FRONT, BOTH) else (0.0,),
-            teeth.contact(Contact(contact_ratio=ratio), drive),
+            teeth.contact(_contact(settings, drive), drive),
         )
         return TwoGears(gear) if pinions == BETWEEN else gear
 
