@@ -204,8 +204,8 @@ def effects_of_changes(
     changes = possible_changes(model) if found else ()
     every = slopes_of_tongues(model, changes, found, speeds)
     # What the model refuses in both directions cannot be changed by parts of its value.
-    taken = np.isfinite(every).all(axis=(1, 2))
-    changes, every = tuple(change for change, here in zip(changes, taken, strict=True) if here), every[taken]
+    taken = [i for i in range(len(changes)) if np.isfinite(every[i]).all()]
+    changes, every = tuple(changes[i] for i in taken), every[taken]
     strongest = max(range(len(found)), key=lambda i: found[i].growth_rate, default=0)
     slopes = [((each[:, 1] - each[:, 0]).sum(), each[strongest, 2]) for each in every]
     # Where all speeds are unstable no width changes: growth decides.
