@@ -23,6 +23,8 @@ _speed = partial(variable, units="rpm", rtol=1e-7, atol=1e-4)
 
 # Half the difference over which quantities are differentiated.
 _STEP = 1e-4
+# Tongues narrower than this part of their speed are about to close: their widths are known to few digits.
+_NARROW = 1e-3
 
 
 def of_the_teeth(path: tuple[str, ...]) -> tuple[Change, ...]:
@@ -70,7 +72,8 @@ def levers(
     further : sequence of Change
         Changes beside those that each model's own parameters allow.
     speeds_rpm : tuple of float
-        Lowest and highest speed [rpm]; tongues cut off there are left out.
+        Lowest and highest speed [rpm]; tongues cut off there are left out, and those narrower than a thousandth of
+        their speed.
 
     Returns
     -------
@@ -122,9 +125,11 @@ def levers(
 
 
 def _whole(model: Model, low: float, high: float) -> tuple[Tongue, ...]:
-    """Tongues between two speeds [rad/s] that end inside."""
+    """Tongues between two speeds [rad/s] that end inside, without those about to close."""
     found = tongues(model, (low, high))
-    return tuple(each for each in found if low < each.lower and each.upper < high)
+    return tuple(
+        each for each in found if low < each.lower and each.upper < high and each.width > _NARROW * each.upper
+    )
 
 
 def one_more_tooth(cases: Mapping[str, Transverse], speeds_rpm: tuple[float, float]) -> xr.Dataset:
@@ -186,6 +191,53 @@ def _percent(before: Tongue, after: Tongue | None) -> tuple[float, float]:
         return np.nan, np.nan
     middle = (after.lower + after.upper) / (before.lower + before.upper)
     return 100.0 * (middle - 1.0), 100.0 * (after.width / before.width - 1.0)
+
+
+def followed(
+    model: Model, changes: Sequence[Change], size: float, table: xr.Dataset, speeds_rpm: tuple[float, float]
+) -> xr.Dataset:
+    """Make each change in earnest and look for the tongues of a table of levers again.
+
+    Parameters
+    ----------
+    model : Model
+    changes : sequence of Change
+        Those of the table, in its order.
+    size : float
+        Relative change, such as 0.1.
+    table : xarray.Dataset
+        From :func:`levers`, of this model alone.
+    speeds_rpm : tuple of float
+        Lowest and highest speed [rpm].
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (tongue, change): ``centre_change``, ``width_change``, found over `size`, to be held against those of the
+        table; NaN where the tongue is gone, is about to close, or ends beyond the speeds.
+    """
+    low, high = (float(rad_per_s(limit)) for limit in speeds_rpm)
+    found = np.full((2, table.sizes["tongue"], len(changes)), np.nan)
+    lower, upper = rad_per_s(table["lower"].values), rad_per_s(table["upper"].values)
+    for column, change in enumerate(changes):
+        after = {each.label: each for each in _whole(change.apply(model, size), low, high)}
+        for row, label in enumerate(table["label"].values.tolist()):
+            if label in after:
+                tongue = after[label]
+                middle = (tongue.lower + tongue.upper) / (lower[row] + upper[row])
+                width = tongue.width / (upper[row] - lower[row])
+                found[:, row, column] = (middle - 1.0) / size, (width - 1.0) / size
+    both = ("tongue", "change")
+    return xr.Dataset(
+        {
+            "centre_change": _relative(
+                both, found[0], "Change of the middle speed over that of the variable"
+            ),
+            "width_change": _relative(both, found[1], "Change of the width over that of the variable"),
+        },
+        coords={name: table[name] for name in ("tongue", "label", "change", "change_name")},
+        attrs={"parameters": f"{size:g} of each variable; {speeds_rpm[0]:g} to {speeds_rpm[1]:g} rpm"},
+    )
 
 
 def arrows(
