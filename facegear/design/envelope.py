@@ -86,6 +86,7 @@ def disk_growth_rate(
     speed: float,
     *,
     angles: Sequence[float] = (0.0,),
+    senses: Sequence[int] | None = None,
 ) -> float:
     """Growth rate of the disk alone under driving forces: its largest eigenvalue's real part.
 
@@ -98,6 +99,8 @@ def disk_growth_rate(
         Ω2 of the face gear [rad/s], 0 or greater.
     angles : sequence of float
         Where the forces act [rad], one each.
+    senses : sequence of int, optional
+        1 for a force in the sense in which the disk turns, -1 for one against it. Default: all 1.
 
     Returns
     -------
@@ -110,7 +113,7 @@ def disk_growth_rate(
         If an argument is of the wrong kind or outside its range.
     """
     damping, stiffness = disk_matrices(body, speed)
-    stiffness = stiffness + force.stiffness(body, speed, tuple(angles))
+    stiffness = stiffness + force.stiffness(body, speed, angles, senses)
     return float(natural_exponents(np.eye(len(stiffness)), damping, stiffness).real.max())
 
 
@@ -122,6 +125,7 @@ def critical_power(
     following: Following = "follower",
     harmonics: int = 5,
     angles: Sequence[float] = (0.0,),
+    senses: Sequence[int] | None = None,
     highest_power: float = 0.0,
     spread: Spread = RIM_POINT,
 ) -> float:
@@ -142,6 +146,8 @@ def critical_power(
     angles : sequence of float
         Where the forces act [rad], one each. Follower forces add up: two of them make the disk flutter at half the
         power of each.
+    senses : sequence of int, optional
+        As for :func:`disk_growth_rate`.
     highest_power : float
         Powers up to this one [W] are tried in any case.
     spread : Spread
@@ -169,7 +175,7 @@ def critical_power(
 
     def growth(share: float) -> float:
         force = DrivingForce(share * unit, pinion_speed, following, harmonics, spread)
-        return disk_growth_rate(body, force, speed, angles=angles)
+        return disk_growth_rate(body, force, speed, angles=angles, senses=senses)
 
     low, high = 0.0, _FIRST
     last = max(_LAST, nonnegative("highest_power", highest_power, "W") / unit)

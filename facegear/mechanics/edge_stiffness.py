@@ -7,6 +7,7 @@ a power wherever it presses (:mod:`facegear.mechanics.spread_force`); at the rim
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Literal
@@ -298,20 +299,30 @@ class DrivingForce:
                 f"{stress / body.material.youngs_modulus:.3g} times Young's modulus (another unit of power or speed?)"
             )
 
-    def stiffness(self, body: Body, speed: float, angles: tuple[float, ...]) -> FloatArray:
-        """K_f of equal forces at several angles [1/s²].
+    def stiffness(
+        self, body: Body, speed: float, angles: Sequence[float], senses: Sequence[int] | None = None
+    ) -> FloatArray:
+        """K_f of forces of one size at several angles [1/s²].
 
         Parameters
         ----------
         body : Body
         speed : float
             Ω2 [rad/s].
-        angles : tuple of float
+        angles : sequence of float
             Of the pinions, in the sense in which the disk turns [rad].
+        senses : sequence of int, optional
+            1 where a pinion drives the disk, -1 where the disk drives it. Default: all drive.
 
         Returns
         -------
         ndarray, shape (n, n)
         """
-        unit = unit_stiffness(body, speed, self.harmonics, self.following, angles, self.spread)
-        return self.newtons(body.drive) * unit
+        places = tuple(zip(angles, senses or (1,) * len(angles), strict=True))
+        ways = {way: tuple(angle for angle, own in places if own == way) for way in (1, -1)}
+        units = [
+            way * unit_stiffness(body, speed, self.harmonics, self.following, here, self.spread)
+            for way, here in ways.items()
+            if here
+        ]
+        return np.asarray(self.newtons(body.drive) * sum(units))

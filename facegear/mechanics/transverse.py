@@ -16,6 +16,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -104,6 +105,48 @@ def mirrored(body: Body, shape: PiecewiseChebyshev) -> PiecewiseChebyshev:
     """Shape vector at the opposite angle, φ(r_c, -θ_c) from φ(r_c, θ_c)."""
     signs = np.array([-1.0 if mode.wave == "sin" else 1.0 for mode in disk_modes(body)])
     return PiecewiseChebyshev(shape.breakpoints, shape.coefficients * signs)
+
+
+class Driving(NamedTuple):
+    """Where pinions act on a gear, and which of them drive it.
+
+    Attributes
+    ----------
+    angles : tuple of float
+        In the sense in which the gear turns [rad].
+    senses : tuple of int
+        1 for a pinion that drives the gear, -1 for one that it drives.
+    """
+
+    angles: tuple[float, ...]
+    senses: tuple[int, ...]
+
+
+class FaceGears(Protocol):
+    """One face gear with its pinions, or several alike: what reports on a drive need of its model."""
+
+    @property
+    def gear(self) -> PinionsOnDisk:
+        """A gear with its pinions; all are alike."""
+        ...
+
+    def with_gear(self, gear: PinionsOnDisk) -> FaceGears:
+        """Return the model with other gears."""
+        ...
+
+    @property
+    def driving(self) -> tuple[Driving, ...]:
+        """How each gear is driven."""
+        ...
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """One for each row of the matrices."""
+        ...
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed of the gears [rad/s]."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -198,12 +241,27 @@ class PinionsOnDisk(ABC):
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed Ω2 of the face gear [rad/s]."""
 
+    @property
+    def gear(self) -> PinionsOnDisk:
+        """The gear with its pinions: itself."""
+        return self
+
+    def with_gear(self, gear: PinionsOnDisk) -> PinionsOnDisk:
+        """Return the model with another gear in place of `gear`: that gear."""
+        return gear
+
+    @property
+    def driving(self) -> tuple[Driving, ...]:
+        """How each gear is driven: the one there is, by all its pinions."""
+        angles = tuple(self.contact.sense * angle for angle in self.pinion_angles)
+        return (Driving(angles, (1,) * len(angles)),)
+
     def disk_matrices(self, speed: float) -> tuple[FloatArray, FloatArray]:
         """Damping and stiffness of the disk under the driving forces alone at Ω2 [rad/s], each (n, n)."""
         damping, stiffness = disk_matrices(self.body, speed)
         if self.force is not None and self.force.power > 0.0:
-            angles = tuple(self.contact.sense * angle for angle in self.pinion_angles)
-            stiffness = stiffness + self.force.stiffness(self.body, speed, angles)
+            (driving,) = self.driving
+            stiffness = stiffness + self.force.stiffness(self.body, speed, *driving)
         return damping, stiffness
 
 

@@ -14,7 +14,7 @@ the upper gear it presses with the other flanks of its teeth, whose contact is m
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
 
@@ -30,6 +30,7 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, disk_matrices, modal_mass, unit_shape
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import RadialModes
+from facegear.mechanics.transverse import Driving
 from facegear.support.parameters import keep, one_of, positive
 from facegear.support.types import FloatArray
 
@@ -51,13 +52,14 @@ class TwoGears:
     """Transverse vibration of two equal face gears that share their pinions, each pinion on the springs of its teeth.
 
     An input drives both gears; an idler takes torque from the upper gear and gives it to the lower; an output is driven
-    by both. Under load all meshes carry the same torque. The driving forces in the planes of the gears are left out.
+    by both. All meshes carry the same torque, and have the same force in the plane of their gear: a pinion that drives
+    a gear pushes it the way it turns, one that is driven holds it back.
 
     Parameters
     ----------
     gear : MeshOscillator
-        The lower gear with its pinions, all on its front, without phases of their own and without driving force; the
-        upper gear is another like it.
+        The lower gear with its pinions, all on its front, without phases of their own; the upper gear is another like
+        it. Its `force` is that of each mesh: an input brings in twice the power.
     roles : sequence of {"input", "idler", "output"}, optional
         What each pinion does. Default: all are inputs.
 
@@ -85,7 +87,7 @@ class TwoGears:
     def __post_init__(self) -> None:
         if not isinstance(self.gear, MeshOscillator):
             raise TypeError(f"gear must be a MeshOscillator, got {self.gear!r}")
-        for name in ("sides", "phases", "force"):
+        for name in ("sides", "phases"):
             if (value := getattr(self.gear, name)) is not None:
                 raise ValueError(f"gear.{name} must be None between two gears, got {value!r}")
         if self.gear.clocking != 0.0:
@@ -123,6 +125,19 @@ class TwoGears:
         body, pinions = self.gear.body, self.gear.coordinates[-len(self.gear.pinion_angles) :]
         lower, upper = (disk_coordinates(body, part) for part in ("lower face gear", "upper face gear"))
         return (*lower, *upper, *pinions)
+
+    def with_gear(self, gear: MeshOscillator) -> TwoGears:
+        """Return two other gears with pinions in the same roles."""
+        return replace(self, gear=gear)
+
+    @property
+    def driving(self) -> tuple[Driving, ...]:
+        """How the lower and the upper gear are driven, each seen as it turns."""
+        (driving,) = self.gear.driving
+        lower, upper = (
+            tuple(1 if DRIVES[duty][above] else -1 for duty in self.duties) for above in (False, True)
+        )
+        return Driving(driving.angles, lower), Driving(tuple(-angle for angle in driving.angles), upper)
 
     @property
     def contact_ratio(self) -> float:
@@ -164,13 +179,24 @@ class TwoGears:
         own = np.array([gear.pinion_mass, gear.bearing_damping, gear.bearing_stiffness]) / modal_mass(
             gear.body
         )
-        lower, upper = (disk_matrices(gear.body, turning) for turning in (speed, -speed))
-        damping, stiffness = (
-            block_diag(below, above, value * np.eye(count))
-            for below, above, value in zip(lower, upper, own[1:], strict=True)
-        )
+        disks = [disk_matrices(gear.body, turning) for turning in (speed, -speed)]
+        damping = block_diag(*(disk[0] for disk in disks), own[1] * np.eye(count))
+        pressed = [disk[1] + force for disk, force in zip(disks, self._force_stiffness(speed), strict=True)]
+        stiffness = block_diag(*pressed, own[2] * np.eye(count))
         mass = np.diag(np.append(np.ones(len(damping) - count), np.full(count, own[0])))
         return PeriodicSystem(mass, damping, stiffness, self.loads, mesh_period(gear.body.drive, speed))
+
+    def _force_stiffness(self, speed: float) -> tuple[FloatArray | float, FloatArray | float]:
+        """K_f of the forces in the planes of the lower and the upper gear [1/s²]."""
+        gear, force = self.gear, self.gear.force
+        if force is None or force.power == 0.0:
+            return 0.0, 0.0
+        below, above = self.driving
+        # At the angles of the lower gear what pushes the upper one on is a force the other way round.
+        return (
+            force.stiffness(gear.body, speed, *below),
+            -force.stiffness(gear.body, speed, below.angles, above.senses),
+        )
 
 
 class _Mesh(NamedTuple):

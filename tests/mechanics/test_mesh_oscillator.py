@@ -171,10 +171,10 @@ def springs(oscillator, pinion, rule, angle, phase, sense=1.0):
     return found
 
 
-def by_another_route(oscillator, found, speed, turning=None):
+def by_another_route(oscillator, found, speed, turning=None, disk=None):
     stiffness = oscillator.mesh_stiffness * math.sin(DRIVE.pressure_angle) ** 2
     return oscillator_multipliers(
-        beyond_the_rim(),
+        beyond_the_rim() if disk is None else disk,
         found,
         speed if turning is None else turning,
         mesh_period(DRIVE, speed),

@@ -1,11 +1,13 @@
 """Two gears that share pinions: symmetry, assembly, the flanks of driven pinions, an independent route."""
 
-from dataclasses import replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pytest
 
 import facegear as fg
+from facegear.design.envelope import disk_growth_rate
+from facegear.floquet.modes import natural_exponents
 from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.geometry.kinematics import ContactPath, mesh_period
@@ -14,14 +16,16 @@ from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.mesh_oscillator import FOLLOWED, MeshOscillator
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
-from tests.independent.complex_galerkin import Pinion, Spring
-from tests.mechanics.test_mesh_oscillator import by_another_route
+from tests.independent.complex_galerkin import ComplexDisk, Pinion, Spring
+from tests.independent.edge_load import LoadedDisk
+from tests.mechanics.test_mesh_oscillator import beyond_the_rim, by_another_route
 from tests.mechanics.test_transverse import greatest_distance
 
 DRIVE = fg.Drive(26, 130, 3.175e-3)
 ODD = fg.Drive(25, 130, 3.175e-3)
 LOAD = fg.MeshLoad(stiffness=0.7, damping=3e-6, mass=1.0)
 SPEED = float(fg.rad_per_s(600.0))
+FORCE = fg.DrivingForce(power=1e5, pinion_speed=500.0)
 TRUE = replace(FOLLOWED, contact_ratio=DRIVE.geometric_contact_ratio)
 
 
@@ -122,7 +126,7 @@ def test_a_pair_at_the_pitch_point_has_the_pressure_angle_there():
     ],
 )
 def test_against_complex_modes_and_dop853(roles):
-    own = gear((0, 40.5), contact=replace(TRUE, sharing="each"))
+    own = gear((0, 40.5), contact=replace(TRUE, sharing="each"), force=FORCE)
     path = ContactPath(DRIVE, TRUE.contact_ratio)
     sweep = DRIVE.entry_rotation - DRIVE.exit_rotation
     upright = DRIVE.entry_rotation / sweep * path.contact_ratio
@@ -133,8 +137,63 @@ def test_against_complex_modes_and_dop853(roles):
             sense = (1.0 if driving else -1.0) * (1.0, -1.0)[disk]
             for pair in range(path.pairs):
                 springs.append(spring(path, pair, phase, driving, upright, sense, angle, number, disk))
-    found = by_another_route(own, springs, SPEED, turning=(SPEED, -SPEED))
+    plain = beyond_the_rim()
+    disk = Driven(
+        **{each.name: getattr(plain, each.name) for each in fields(ComplexDisk)},
+        force=FORCE.newtons(DRIVE),
+        angles=own.pinion_angles,
+        roles=roles,
+    )
+    found = by_another_route(own, springs, SPEED, turning=(SPEED, -SPEED), disk=disk)
     assert greatest_distance(found, multipliers(TwoGears(own, roles).system(SPEED))) < 1e-8
+    # Far more than that comes from the forces.
+    assert (
+        greatest_distance(found, multipliers(TwoGears(replace(own, force=None), roles).system(SPEED))) > 1e-4
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Driven(LoadedDisk):
+    """Either gear by the sense in which it turns, seen from the lower one."""
+
+    angles: tuple[float, ...] = ()
+    roles: tuple[str, ...] = ()
+
+    def load_stiffness(self, speed):
+        alone = super().load_stiffness(abs(speed))
+        wave = np.repeat(self.waves, self.M + 1)
+        total = np.zeros_like(alone)
+        for angle, role in zip(self.angles, self.roles, strict=True):
+            lower, upper = {"input": (1, 1), "idler": (1, -1), "output": (-1, -1)}[role]
+            # Forward is towards growing angles for the lower gear and towards falling ones for the upper.
+            pushed = lower if speed > 0.0 else -upper
+            total += pushed * np.exp(1j * (wave[None, :] - wave[:, None]) * angle) * alone
+        return total
+
+
+def test_the_upper_gear_is_driven_as_the_lower_one_is():
+    """Turned about the axis of the first pinion it is the lower one, its forces included; an idler holds it back."""
+    there, turned = TwoGears(gear((0, 31), force=FORCE)), TwoGears(gear((0, -31), force=FORCE))
+    assert distance(there, turned) < 1e-10
+    size = len(disk_matrices(there.gear.body, SPEED)[0])
+
+    def alone(model):
+        system = model.system(SPEED)
+        for own in (slice(0, size), slice(size, 2 * size)):
+            exponents = natural_exponents(np.eye(size), system.damping[own, own], system.stiffness[own, own])
+            yield exponents.real.max()
+
+    lower, upper = alone(there)
+    assert lower == pytest.approx(upper, rel=1e-9)
+    assert lower == pytest.approx(
+        disk_growth_rate(there.gear.body, FORCE, SPEED, angles=there.gear.pinion_angles), rel=1e-9
+    )
+    idle = TwoGears(there.gear, roles=("input", "idler"))
+    for growth, driving in zip(alone(idle), idle.driving, strict=True):
+        body = idle.gear.body
+        own = disk_growth_rate(body, FORCE, SPEED, angles=driving.angles, senses=driving.senses)
+        assert growth == pytest.approx(own, rel=1e-9)
+    assert idle.driving[1].senses == (1, -1)
 
 
 def spring(path, pair, phase, driving, upright, sense, angle, number, disk):
@@ -182,7 +241,6 @@ def test_maps_and_tongues_take_it_like_any_model():
         ),
         (lambda: TwoGears(gear((0, 31), phases=(0.0, 0.1))), "gear.phases must be None"),
         (lambda: TwoGears(gear(clocking=0.5)), "gear.clocking must be 0 between two gears, got 0.5"),
-        (lambda: TwoGears(gear(force=fg.DrivingForce(1e5, 500.0))), "gear.force must be None"),
         (
             lambda: TwoGears(gear((0, 31)), roles=("input",)),
             r"roles must list one a pinion, 2, got \('input',\)",
