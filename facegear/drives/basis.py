@@ -17,12 +17,12 @@ from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.edge_stiffness import complete_harmonics
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, Body
-from facegear.mechanics.transverse import PinionsOnDisk
+from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import integer_at_least, within
 from facegear.support.types import FloatArray
 
 
-def with_basis(model: PinionsOnDisk, nodal_circles: int, nodal_diameters: int) -> PinionsOnDisk:
+def with_basis(model: FaceGears, nodal_circles: int, nodal_diameters: int) -> FaceGears:
     """Return the same drive in another basis.
 
     Bearing stiffness and damping keep their values in N/m and N s/m: μ (4-17) is measured by a stiffness of the disk
@@ -30,13 +30,13 @@ def with_basis(model: PinionsOnDisk, nodal_circles: int, nodal_diameters: int) -
 
     Parameters
     ----------
-    model : PinionsOnDisk
+    model : FaceGears
     nodal_circles, nodal_diameters : int
         M and N of the new basis.
 
     Returns
     -------
-    PinionsOnDisk
+    FaceGears
 
     Raises
     ------
@@ -52,12 +52,13 @@ def with_basis(model: PinionsOnDisk, nodal_circles: int, nodal_diameters: int) -
     >>> round(richer.bearing_stiffness / model.bearing_stiffness, 12), round(richer.load.stiffness, 2)
     (1.0, 1.04)
     """
-    body = replace(model.body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
-    load = replace(model.load, stiffness=model.bearing_stiffness / reference_stiffness(body))
-    force = model.force
-    if force is not None and force.harmonics >= complete_harmonics(model.body):
+    gear = model.gear
+    body = replace(gear.body, nodal_circles=nodal_circles, nodal_diameters=nodal_diameters)
+    load = replace(gear.load, stiffness=gear.bearing_stiffness / reference_stiffness(body))
+    force = gear.force
+    if force is not None and force.harmonics >= complete_harmonics(gear.body):
         force = replace(force, harmonics=max(force.harmonics, complete_harmonics(body)))
-    return replace(model, body=body, load=load, force=force)
+    return model.with_gear(replace(gear, body=body, load=load, force=force))
 
 
 def unstable_share(found: Sequence[Tongue], speeds: tuple[float, float]) -> float:
@@ -115,7 +116,7 @@ class SettledTongues:
 
     Attributes
     ----------
-    model : PinionsOnDisk
+    model : FaceGears
         The drive in that basis.
     speeds : tuple of float
         Lowest and highest speed [rad/s].
@@ -125,7 +126,7 @@ class SettledTongues:
         Whether the last two agree on whether there is a tongue, and within the tolerance on where.
     """
 
-    model: PinionsOnDisk
+    model: FaceGears
     speeds: tuple[float, float]
     steps: tuple[BasisStep, ...]
     settled: bool
@@ -142,7 +143,7 @@ class SettledTongues:
 
 
 def settled_tongues(
-    model: PinionsOnDisk, speeds: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
+    model: FaceGears, speeds: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
 ) -> SettledTongues:
     """Tongues of a drive in a basis that is raised until they stand still.
 
@@ -151,7 +152,7 @@ def settled_tongues(
 
     Parameters
     ----------
-    model : PinionsOnDisk
+    model : FaceGears
         Drive in the first basis.
     speeds : tuple of float
         Lowest and highest speed [rad/s].
@@ -175,7 +176,7 @@ def settled_tongues(
     integer_at_least("most_steps", most_steps, 1)
     steps: list[BasisStep] = []
     shown = model
-    for circles, diameters in _bases(model.body, most_steps):
+    for circles, diameters in _bases(model.gear.body, most_steps):
         shown = with_basis(model, circles, diameters) if steps else model
         found = tongues(shown, speeds)
         moved = disagreement(steps[-1].tongues, found, speeds) if steps else math.nan

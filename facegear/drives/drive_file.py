@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from facegear.design.body import Requirements
 from facegear.drives.contacts import NAMES, USUAL_CORRECTION, in_torsion, transverse_contacts
@@ -33,7 +33,8 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
 from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
 from facegear.mechanics.torsional import Gearbox, Torsional, mesh_stiffness
-from facegear.mechanics.transverse import PinionsOnDisk, Transverse
+from facegear.mechanics.transverse import FaceGears, Transverse
+from facegear.mechanics.two_gears import Role, TwoGears, fitting_angles
 from facegear.support.parameters import Material, MeshLoad, integer_at_least, rpm, within
 from facegear.support.plain_yaml import read_plain_yaml
 
@@ -59,8 +60,8 @@ class DriveFile:
     ----------
     name : str
         Name of the drive.
-    transverse : Transverse or MeshOscillator
-        Drive, body, mesh load and pinions, with rigid teeth or with `teeth`.
+    transverse : FaceGears
+        Drive, body, mesh load and pinions, with rigid teeth or with `teeth`; two gears if there are `roles`.
     requirements : Requirements
         Power [W], pinion speed [rad/s], safety factor, operating speeds of the face gear [rad/s].
     contacts : mapping of str to Contact
@@ -69,19 +70,22 @@ class DriveFile:
         Shafts and inertias, if the file has a gearbox.
     teeth : FlexibleTeeth or None
         None for rigid ones.
+    roles : tuple of str or None
+        What each pinion does between two gears; None where there is one gear.
     """
 
     name: str
-    transverse: PinionsOnDisk
+    transverse: FaceGears
     requirements: Requirements
     contacts: Mapping[str, Contact]
     torsional: Torsional | None = None
     teeth: FlexibleTeeth | None = None
+    roles: tuple[Role, ...] | None = None
 
     @property
     def drive(self) -> Drive:
         """Teeth."""
-        return self.transverse.body.drive
+        return self.transverse.gear.body.drive
 
 
 def read_drive_file(path: str | Path) -> DriveFile:
@@ -247,6 +251,13 @@ def _value(path: str, key: Key, value: Any) -> Any:
         if not isinstance(value, str) or value not in key.choices:
             raise ValueError(f"{path} must be {key.valid}, got {_shown(value)}")
         return value
+    if key.kind == "choices":
+        if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_PINIONS:
+            raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
+        for i, entry in enumerate(value):
+            if entry not in key.choices:
+                raise ValueError(f"{path}[{i}] must be {' or '.join(key.choices)}, got {_shown(entry)}")
+        return tuple(value)
     if key.kind == "numbers":
         if not isinstance(value, list | tuple) or not key.fewest <= len(value) <= MOST_PINIONS:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
@@ -321,23 +332,26 @@ def _built(found: _Found) -> DriveFile:
     contacts = _contacts(found, drive, material, stiffness, asked)
     contact = next(iter(contacts.values()))
     load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
-    teeth = None
-    build: Callable[[], PinionsOnDisk] = partial(Transverse, body, load, angles, contact)
-    if values["teeth"] is not None:
+    teeth, roles = None, _roles(found, drive)
+    transverse: FaceGears
+    if values["teeth"] is None:
+        transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact))
+    else:
         teeth = _teeth(found, drive, material, stiffness)
         contacts = _by_model(
             found, "teeth", lambda: {name: teeth.contact(own, drive) for name, own in contacts.items()}
         )
         build = partial(teeth.under, body, load, angles, next(iter(contacts.values())))
-    transverse = _by_model(found, "pinions" if teeth is None else "teeth", build)
-    _by_model(found, "material", lambda: _by_model(found, "body", lambda: transverse.bearing_stiffness))
+        gear = _by_model(found, "teeth", build)
+        transverse = gear if roles is None else _by_model(found, "second_gear", lambda: TwoGears(gear, roles))
+    _by_model(found, "material", lambda: _by_model(found, "body", lambda: transverse.gear.bearing_stiffness))
     requirements = _requirements(found, body)
     torsional = None
     if (gearbox := values["gearbox"]) is not None:
         torsional = _by_model(
             found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive))
         )
-    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth)
+    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles)
 
 
 def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[float]:
@@ -346,6 +360,35 @@ def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[float]:
     if len(sides) != pinions or not all(side in (1.0, -1.0) for side in sides):
         raise ValueError(f"teeth.sides must list 1 or -1 for each of {pinions} pinions, got {list(sides)}")
     return sides
+
+
+def _roles(found: _Found, drive: Drive) -> tuple[Role, ...] | None:
+    """Check what each pinion does between two gears, if the file has a second one."""
+    if found.values["second_gear"] is None:
+        return None
+    roles, teeth = found.values["second_gear"]["roles"], found.values["teeth"]
+    angles = found.values["pinions"]["angles"]
+    if teeth is None:
+        raise ValueError(
+            "second_gear must stand beside a section teeth: pinions between gears hang on their springs"
+        )
+    if teeth["sides"] or teeth["clocking"]:
+        raise ValueError(
+            "teeth.sides and teeth.clocking must be left out beside second_gear: each gear has teeth on one face"
+        )
+    if len(roles) != len(angles) or "input" not in roles:
+        raise ValueError(
+            f"second_gear.roles must list one role for each of {len(angles)} pinions, an input among them, got "
+            f"{list(roles)}"
+        )
+    for i, (angle, near) in enumerate(zip(angles, fitting_angles(drive, angles), strict=True)):
+        if angle != near:
+            raise ValueError(
+                f"pinions.angles_deg[{i}] must differ from the first by a whole number of halves of the angular pitch, "
+                f"{math.degrees(drive.angular_pitch) / 2.0:.10g}°, for teeth to fit into both gears, got "
+                f"{math.degrees(angle):.10g}°; the nearest that fits is {math.degrees(near):.10g}°"
+            )
+    return cast("tuple[Role, ...]", roles)
 
 
 def _teeth(found: _Found, drive: Drive, material: Material, stiffness: float | None) -> FlexibleTeeth:

@@ -15,9 +15,10 @@ from typing import Any, Literal
 from facegear.drives.flexible_teeth import CENTROID, SHARING
 from facegear.geometry.drive import FEWEST_TEETH
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
+from facegear.mechanics.two_gears import DRIVES
 from facegear.support.parameters import STEEL, WATT_PER_HORSEPOWER
 
-Kind = Literal["integer", "number", "text", "choice", "numbers"]
+Kind = Literal["integer", "number", "text", "choice", "numbers", "choices"]
 
 # Tongues crowd towards standstill: their number, and the time to find them, goes with highest over lowest speed.
 WIDEST_SPEED_RATIO = 50.0
@@ -53,8 +54,8 @@ class Key:
         Name in the file, with its unit.
     meaning : str
         What it is, for the documentation.
-    kind : {"number", "integer", "text", "choice", "numbers"}
-        "numbers" is a list of numbers.
+    kind : {"number", "integer", "text", "choice", "numbers", "choices"}
+        "numbers" is a list of numbers, "choices" one of words.
     unit : str
         Unit of the value in the file.
     lowest, highest : float
@@ -64,7 +65,7 @@ class Key:
     default : object
         Value if the key is left out; None for a key that must be there.
     choices : tuple of str
-        Valid words of a "choice".
+        Valid words of a "choice" or of "choices".
     quantity : str
         Name of the package's own parameter, where it is not that of the key without its unit. Keys of a section with
         the same quantity say the same in different units: a file has exactly one of them.
@@ -99,7 +100,7 @@ class Key:
 
     @property
     def fewest(self) -> int:
-        """How many "numbers" there are at least."""
+        """How many entries a list has at least."""
         return 0 if self.default == () else 1
 
     @property
@@ -107,6 +108,8 @@ class Key:
         """What is valid, in words."""
         if self.kind == "choice":
             return " or ".join(self.choices)
+        if self.kind == "choices":
+            return f"a list of 1 to {MOST_PINIONS} words, each {' or '.join(self.choices)}"
         if self.kind == "text":
             return f"text of 1 to {LONGEST_TEXT} characters"
         interval = f"{self.lowest:g} to {self.highest:g}{f' {self.unit}' if self.unit else ''}"
@@ -374,6 +377,22 @@ _TEETH = Section(
     required=False,
 )
 
+_SECOND_GEAR = Section(
+    "A second face gear, facing the first, that meshes with the same pinions (chapter 8); it needs `teeth`, all on one "
+    "face. Angles of pinions then differ by whole halves of the angular pitch, and the power of `operation` is that of "
+    "each mesh.",
+    (
+        Key(
+            "roles",
+            "what each pinion does: it drives both gears (input), takes power from the second gear for the first "
+            "(idler), or is driven by both (output); at least one is an input",
+            "choices",
+            choices=tuple(DRIVES),
+        ),
+    ),
+    required=False,
+)
+
 SECTIONS: Mapping[str, Section] = MappingProxyType(
     {
         "gears": _GEARS,
@@ -381,6 +400,7 @@ SECTIONS: Mapping[str, Section] = MappingProxyType(
         "material": _MATERIAL,
         "pinions": _PINIONS,
         "teeth": _TEETH,
+        "second_gear": _SECOND_GEAR,
         "operation": _OPERATION,
         "gearbox": _GEARBOX,
     }
@@ -435,6 +455,9 @@ def _key_schema(key: Key) -> dict[str, Any]:
         return told | {"type": "string", "maxLength": LONGEST_TEXT, "pattern": r"\S"}
     if key.kind == "choice":
         return told | {"enum": list(key.choices)}
+    if key.kind == "choices":
+        each = {"enum": list(key.choices)}
+        return told | {"type": "array", "minItems": 1, "maxItems": MOST_PINIONS, "items": each}
     ends = {"minimum": key.lowest, "maximum": key.highest}
     if key.kind == "numbers":
         return told | {
@@ -468,7 +491,8 @@ def _row(key: Key, others: list[str]) -> str:
     if others:
         default = f"this or {' or '.join(others)}"
     valid = key.valid.replace(f" {key.unit}", "") if key.unit else key.valid
-    return f"| `{key.name}` | {key.meaning} | {key.unit or '1' if key.kind != 'text' else ''} | {valid} | {default} |"
+    unit = "" if key.kind in ("text", "choices") else key.unit or "1"
+    return f"| `{key.name}` | {key.meaning} | {unit} | {valid} | {default} |"
 
 
 def _shown_default(value: Any) -> str:

@@ -31,7 +31,7 @@ from facegear.maps.tracing import Tongue
 from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
-from facegear.mechanics.transverse import PinionsOnDisk, nominal_pinion_mass
+from facegear.mechanics.transverse import FaceGears, nominal_pinion_mass
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s, rpm
 from facegear.support.types import FloatArray
@@ -62,7 +62,8 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
     tuple of Row
         In mm, degrees, kg and N/m.
     """
-    drive, body, model = file.drive, file.transverse.body, file.transverse
+    drive, model = file.drive, file.transverse.gear
+    body = model.body
     force = DrivingForce(file.requirements.power, file.requirements.pinion_speed).newtons(drive)
     return (
         Row("gear ratio N2/N1", drive.gear_ratio, "1"),
@@ -98,7 +99,7 @@ def strength(file: DriveFile) -> tuple[Row, ...]:
     tuple of Row
         Root thickness [mm], stress, allowable stress [MPa], their ratio [-], safe if above 1.
     """
-    stress, allowed = file.requirements.root_stresses(file.transverse.body)
+    stress, allowed = file.requirements.root_stresses(file.transverse.gear.body)
     return (
         Row("root thickness of the pinion's tooth", 1e3 * root_thickness(file.drive), "mm"),
         Row("largest stress at the root", 1e-6 * stress, "MPa"),
@@ -107,13 +108,13 @@ def strength(file: DriveFile) -> tuple[Row, ...]:
     )
 
 
-def flutter(body_model: PinionsOnDisk, duty: Requirements) -> tuple[Row, ...]:
+def flutter(model: FaceGears, duty: Requirements) -> tuple[Row, ...]:
     """Power at which the driving forces alone make the disk flutter (chapter 6), against the power of the drive.
 
     Parameters
     ----------
-    body_model : PinionsOnDisk
-        Drive in the basis of the report; of its pinions only their angles count.
+    model : FaceGears
+        Drive in the basis of the report; of its pinions only their angles count, and which of them drive.
     duty : Requirements
         Power of each pinion, its speed, range of speed.
 
@@ -121,11 +122,11 @@ def flutter(body_model: PinionsOnDisk, duty: Requirements) -> tuple[Row, ...]:
     -------
     tuple of Row
         Power of a pinion; critical power of each pinion, all pinions together, for forces that follow the rim and for
-        those that keep their direction, the smallest of both ends of the speed range [kW]; the former over the power
-        of a pinion [-]. Without viscous damping of the disk any power flutters, and the critical one is 0.
+        those that keep their direction, the smallest of all gears and both ends of the speed range [kW]; the former
+        over the power of a pinion [-]; between two gears power is that of each mesh. Without viscous damping of the
+        disk any power flutters, and the critical one is 0.
     """
-    body = body_model.body
-    angles = [body_model.contact.sense * angle for angle in body_model.pinion_angles]
+    body = model.gear.body
     damped = body.material.viscous_loss_factor > 0.0
 
     def smallest(following: Following) -> float:
@@ -136,10 +137,12 @@ def flutter(body_model: PinionsOnDisk, duty: Requirements) -> tuple[Row, ...]:
                 speed,
                 following=following,
                 harmonics=complete_harmonics(body),
-                angles=angles,
+                angles=driving.angles,
+                senses=driving.senses,
                 highest_power=duty.power,
             )
             for speed in duty.speeds
+            for driving in model.driving
         )
 
     follower, dead = (smallest("follower"), smallest("dead")) if damped else (0.0, 0.0)
@@ -154,7 +157,7 @@ def flutter(body_model: PinionsOnDisk, duty: Requirements) -> tuple[Row, ...]:
 def describe(file: DriveFile) -> str:
     """Parameters of a drive file as text, for the provenance of arrays."""
     # The contact ratio in use besides the field: None there is that of the drive.
-    ratio = file.transverse.contact_ratio
+    ratio = file.transverse.gear.contact_ratio
     return f"{file.name}: {file.transverse}, {file.torsional}, contact_ratio = {ratio:.10g}"
 
 
@@ -332,7 +335,7 @@ class ThicknessVerdict(NamedTuple):
 
 
 def thickness_verdict(
-    model: PinionsOnDisk, speeds: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
+    model: FaceGears, speeds: tuple[float, float], *, widest: float = 2.5, tolerance: float = 1e-4
 ) -> ThicknessVerdict:
     """Thickness ratio above which the body is stable in its whole speed range.
 
@@ -340,7 +343,7 @@ def thickness_verdict(
 
     Parameters
     ----------
-    model : PinionsOnDisk
+    model : FaceGears
         With the driving force and in the basis of the report.
     speeds : tuple of float
         Lowest and highest speed [rad/s].
@@ -353,12 +356,13 @@ def thickness_verdict(
     -------
     ThicknessVerdict
     """
-    here = model.body.thickness_ratio
+    gear = model.gear
+    here = gear.body.thickness_ratio
     lowest, highest = THICKNESS_RATIO_RANGE
     searched = (max(lowest, here / widest), min(highest, here * widest))
 
-    def model_at(thickness_ratio: float) -> PinionsOnDisk:
-        return replace(model, body=replace(model.body, thickness_ratio=thickness_ratio))
+    def model_at(thickness_ratio: float) -> FaceGears:
+        return model.with_gear(replace(gear, body=replace(gear.body, thickness_ratio=thickness_ratio)))
 
     low, high = speeds
     try:
@@ -374,7 +378,7 @@ def thickness_verdict(
 
 
 def thickness_verdicts(
-    models: Sequence[PinionsOnDisk], speeds: tuple[float, float], *, jobs: int = -1
+    models: Sequence[FaceGears], speeds: tuple[float, float], *, jobs: int = -1
 ) -> tuple[ThicknessVerdict, ...]:
     """Critical thickness of several models, in processes, in their order."""
     return tuple(in_processes(thickness_verdict, [(model, speeds) for model in models], jobs))

@@ -24,7 +24,7 @@ from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
-from facegear.mechanics.transverse import PinionsOnDisk
+from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import rpm
 
 _FORCES: dict[Following, str] = {"follower": "force follows the rim", "dead": "force keeps its direction"}
@@ -61,7 +61,7 @@ class Case:
         return f"{self.contact}, {_FORCES[self.following]}"
 
 
-def driven(file: DriveFile, following: Following, contact: Contact) -> PinionsOnDisk:
+def driven(file: DriveFile, following: Following, contact: Contact) -> FaceGears:
     """Model of a drive file with the force that its power takes, all harmonics of its stress included.
 
     Parameters
@@ -70,12 +70,9 @@ def driven(file: DriveFile, following: Following, contact: Contact) -> PinionsOn
     following : {"follower", "dead"}
     contact : Contact
     """
-    duty, model = file.requirements, file.transverse
-    return replace(
-        model,
-        contact=contact,
-        force=DrivingForce(duty.power, duty.pinion_speed, following, complete_harmonics(model.body)),
-    )
+    duty, gear = file.requirements, file.transverse.gear
+    force = DrivingForce(duty.power, duty.pinion_speed, following, complete_harmonics(gear.body))
+    return file.transverse.with_gear(replace(gear, contact=contact, force=force))
 
 
 def cases(
@@ -104,7 +101,7 @@ def cases(
 
 
 def _settled(
-    model: PinionsOnDisk, speeds: tuple[float, float], tolerance: float, most_steps: int
+    model: FaceGears, speeds: tuple[float, float], tolerance: float, most_steps: int
 ) -> tuple[SettledTongues, float]:
     found = settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps)
     growth = [mean_growth_rate(found.model.system(v)) for v in np.linspace(*speeds, _SPEEDS).tolist()]
@@ -151,9 +148,12 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     low, high = (f"{rpm(speed):.4g}" for speed in file.requirements.speeds)
     duty = file.requirements
     teeth = "rigid" if file.teeth is None else "flexible"
+    each, gears = (
+        ("pinion", "") if file.roles is None else ("mesh", f" between two gears ({', '.join(file.roles)})")
+    )
     where = (
-        f"from {low} to {high} rpm under the driving force of {1e-3 * duty.power:.4g} kW a pinion at "
-        f"{rpm(duty.pinion_speed):.4g} rpm of the pinion, on {teeth} teeth"
+        f"from {low} to {high} rpm under the driving force of {1e-3 * duty.power:.4g} kW a {each} at "
+        f"{rpm(duty.pinion_speed):.4g} rpm of the pinion, on {teeth} teeth{gears}"
     )
     shares = {case: case.found.unstable_share for case in computed}
     unstable = [case for case in computed if shares[case] > 0.0]
@@ -176,7 +176,7 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     open_cases = sum(not case.found.settled for case in computed)
     if open_cases:
         headline += f" NOT SETTLED in {open_cases} of {len(computed)} cases: a larger basis may turn them."
-    stress, allowed = duty.root_stresses(file.transverse.body)
+    stress, allowed = duty.root_stresses(file.transverse.gear.body)
     strength = f"{1e-6 * stress:.4g} MPa at the root of the pinion's tooth, {1e-6 * allowed:.4g} MPa allowed"
     if stress >= allowed:
         headline += f" The teeth are not strong enough: {strength}."

@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, cast
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -30,7 +30,7 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, disk_matrices, modal_mass, unit_shape
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import RadialModes
-from facegear.mechanics.transverse import Driving
+from facegear.mechanics.transverse import Driving, PinionsOnDisk
 from facegear.support.parameters import keep, one_of, positive
 from facegear.support.types import FloatArray
 
@@ -45,6 +45,23 @@ DRIVES: dict[str, tuple[bool, bool]] = {
 
 # Parts of half an angular pitch by which a pinion may miss its place.
 _FITS = 1e-6
+
+
+def fitting_angles(drive: Drive, angles: Sequence[float]) -> tuple[float, ...]:
+    """Angles at which pinions fit between two gears, the nearest to given ones [rad].
+
+    Parameters
+    ----------
+    drive : Drive
+    angles : sequence of float
+        The first stays; those that fit, to a millionth of half an angular pitch, stay too.
+    """
+    half = 0.5 * drive.angular_pitch
+    steps = [(angle - angles[0]) / half for angle in angles]
+    return tuple(
+        angle if abs(step - round(step)) <= _FITS else angles[0] + round(step) * half
+        for angle, step in zip(angles, steps, strict=True)
+    )
 
 
 @dataclass(frozen=True)
@@ -104,11 +121,9 @@ class TwoGears:
 
     def _require_fit(self) -> None:
         """Refuse pinions whose teeth do not fit into both gears."""
-        first, half = self.gear.pinion_angles[0], 0.5 * self.gear.body.drive.angular_pitch
-        for angle in self.gear.pinion_angles[1:]:
-            steps = (angle - first) / half
-            if abs(steps - round(steps)) > _FITS:
-                near = first + round(steps) * half
+        angles = self.gear.pinion_angles
+        for angle, near in zip(angles, fitting_angles(self.gear.body.drive, angles), strict=True):
+            if angle != near:
                 raise ValueError(
                     "gear.pinion_angles must differ by whole halves of the angular pitch, or teeth do not fit into "
                     f"both gears, got {angle!r} rad; the nearest that fits is {near!r} rad"
@@ -126,9 +141,9 @@ class TwoGears:
         lower, upper = (disk_coordinates(body, part) for part in ("lower face gear", "upper face gear"))
         return (*lower, *upper, *pinions)
 
-    def with_gear(self, gear: MeshOscillator) -> TwoGears:
-        """Return two other gears with pinions in the same roles."""
-        return replace(self, gear=gear)
+    def with_gear(self, gear: PinionsOnDisk) -> TwoGears:
+        """Return two other gears, with pinions in the same roles; errors as of the class."""
+        return replace(self, gear=cast("MeshOscillator", gear))
 
     @property
     def driving(self) -> tuple[Driving, ...]:

@@ -16,7 +16,9 @@ from tests.independent.complex_galerkin import multipliers
 from tests.independent.make_anchors_ch04 import nominal_mass, pinion
 from tests.mechanics.test_transverse import complex_disk
 
-CASE_1 = read_drive_file(Path(__file__).resolve().parents[2] / "data" / "drives" / "case_1.yaml").transverse
+DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
+CASE_1 = read_drive_file(DRIVES / "case_1.yaml").transverse
+TWO_GEARS = read_drive_file(DRIVES / "two_gears.yaml").transverse
 
 
 def interval(low, high):
@@ -53,6 +55,12 @@ class TestWithBasis:
         for harmonics, expected in ((5, 5), (6, 10)):
             driven = replace(CASE_1, force=DrivingForce(4e5, 500.0, harmonics=harmonics))
             assert with_basis(driven, 2, 5).force.harmonics == expected
+
+    def test_keeps_both_gears_and_what_their_pinions_do(self):
+        richer = with_basis(TWO_GEARS, 2, 5)
+        assert richer.roles == TWO_GEARS.roles
+        assert richer.gear == with_basis(TWO_GEARS.gear, 2, 5)
+        assert richer.system(50.0).size == 2 * 33 + 2
 
     @pytest.mark.slow
     def test_agrees_with_complex_modes_integrated_by_an_independent_route(self):

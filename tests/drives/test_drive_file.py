@@ -20,6 +20,7 @@ from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.sharing import shared_load
 from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import rad_per_s
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -217,6 +218,74 @@ class TestFlexibleTeeth:
             DriveFileError, match=r"teeth.tooth_damping_us must be that of gearbox, 50 µs, got 40 µs"
         ):
             parse_drive(self.with_gearbox("40"))
+
+
+class TestTwoGears:
+    TEXT = (DRIVES / "two_gears.yaml").read_text(encoding="utf-8")
+
+    def test_pinions_between_two_gears(self):
+        found = parse_drive(self.TEXT)
+        one = parse_drive(
+            self.TEXT.split("second_gear:")[0] + "operation:" + self.TEXT.split("operation:")[1]
+        )
+        assert one.roles is None
+        assert found.roles == ("input", "idler")
+        assert found.transverse == TwoGears(one.transverse, ("input", "idler"))
+        assert found.contacts == one.contacts
+        assert found.drive == one.drive
+
+    @pytest.mark.parametrize(
+        ("old", "new", "told"),
+        [
+            (
+                "teeth:\n  tooth_damping_us: 10\n",
+                "",
+                "second_gear must stand beside a section teeth",
+            ),
+            (
+                "us: 10\n",
+                "us: 10\n  sides: [1, 1]\n",
+                "teeth.sides and teeth.clocking must be left out beside second",
+            ),
+            (
+                "us: 10\n",
+                "us: 10\n  clocking: 0.5\n",
+                "teeth.sides and teeth.clocking must be left out beside",
+            ),
+            (
+                "[input, idler]",
+                "[input]",
+                r"second_gear.roles must list one role for each of 2 pinions, .*\['input'\]",
+            ),
+            ("[input, idler]", "[idler, idler]", "an input among them"),
+            (
+                "[input, idler]",
+                "[input, sun]",
+                r"second_gear.roles\[1\] must be input or idler or output, got 'sun'",
+            ),
+            (
+                "[input, idler]",
+                "[input, [idler]]",
+                r"second_gear.roles\[1\] must be input or idler or output, got",
+            ),
+            (
+                "[input, idler]",
+                "input",
+                "second_gear.roles must be a list of 1 to 12 words, each input or idler or",
+            ),
+            ("  roles: [input, idler]", "  {}", "second_gear.roles is missing"),
+            (
+                "[0, 90]",
+                "[0, 91]",
+                r"pinions.angles_deg\[1\] must differ from the first by a whole number of halves of the angular pitch, "
+                r"1.384615385°, .* got 91°; the nearest that fits is 91.38461538°",
+            ),
+        ],
+    )
+    def test_what_does_not_go_together_is_refused(self, old, new, told):
+        assert old in self.TEXT
+        with pytest.raises(DriveFileError, match=told):
+            parse_drive(self.TEXT.replace(old, new))
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from facegear.support.parameters import rad_per_s, rpm
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
+TWO_GEARS = read_drive_file(DRIVES / "two_gears.yaml")
 EXAMPLE_B = read_drive_file(DRIVES / "example_b.yaml")
 BOX = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
 RANGE = (float(rad_per_s(500.0)), float(rad_per_s(720.0)))
@@ -77,6 +78,17 @@ def test_two_pinions_flutter_at_half_the_power_of_each():
     # First order, in closed form: the mean shear of p forces is p times that of one.
     first = float(mode_critical_powers(both.body, duty.pinion_speed).min())
     assert together[FOLLOWER] == pytest.approx(1e-3 * first / 2, rel=0.01)
+
+
+def test_between_two_gears_the_one_that_all_meshes_drive_flutters_first():
+    """An idler drives the lower gear as an input does, and holds the upper one back."""
+    both, duty = TWO_GEARS.transverse, TWO_GEARS.requirements
+    lower = values(report.flutter(both.gear, duty))
+    found = values(report.flutter(both, duty))
+    assert found[FOLLOWER] == pytest.approx(lower[FOLLOWER], rel=1e-9)
+    # Without their mean shear the forces hardly make anything flutter.
+    idle = values(report.flutter(replace(both, roles=("input", "output")), duty))
+    assert idle[FOLLOWER] > 2.0 * lower[FOLLOWER]
 
 
 def test_tongues_and_windows_share_out_the_range():

@@ -24,6 +24,7 @@ from facegear.support.parameters import rad_per_s
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
 LOCALIZED = read_drive_file(DRIVES / "localized.yaml")
+TWO_GEARS = read_drive_file(DRIVES / "two_gears.yaml")
 EXAMPLE_B = read_drive_file(DRIVES / "example_b.yaml")
 RANGE = (10.0, 110.0)
 
@@ -56,6 +57,11 @@ class TestDrivenModel:
             EXAMPLE_B.requirements.pinion_speed,
         )
         assert (model.force.following, model.force.harmonics, model.contact_ratio) == ("dead", 6, 1.6)
+
+    def test_both_gears_have_the_force_of_each_mesh(self):
+        model = verdict.driven(TWO_GEARS, "dead", TWO_GEARS.contacts["Tregold"])
+        assert (model.roles, model.gear.contact) == (("input", "idler"), TWO_GEARS.contacts["Tregold"])
+        assert (model.gear.force.power, model.gear.force.harmonics) == (TWO_GEARS.requirements.power, 6)
 
     def test_flutter_of_the_mean_system_needs_a_following_force(self):
         true_sweep = CASE_1.contacts["true sweep"]

@@ -33,7 +33,7 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-def test_there_are_seven_examples():
+def test_there_are_eight_examples():
     assert [path.stem for path in EXAMPLES] == [
         "both_faces",
         "case_1",
@@ -42,6 +42,7 @@ def test_there_are_seven_examples():
         "gearbox_table_7_1",
         "localized",
         "shaft_angle_85",
+        "two_gears",
     ]
 
 
