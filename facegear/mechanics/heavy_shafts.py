@@ -95,7 +95,7 @@ class HeavyShafts:
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
-        """Angles χ1, χ2, χo (7-9) and the modes η_j of the input shaft, then of the output shaft."""
+        """Angles χ1, χ2, χo (7-9) and the modes y_j of the input shaft, then of the output shaft."""
         modes = [
             Coordinate(f"{shaft}, mode {number}", "rad", shaft)
             for shaft in ("input shaft", "output shaft")

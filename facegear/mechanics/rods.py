@@ -8,12 +8,12 @@ so that stiffness k, length and material fix its moment of inertia I, whatever i
 one, k = π G d⁴/(32 l). Craig and Bampton write its twist with the angles of its ends and n modes of the rod held at
 both,
 
-    χ(s) = (1 − s/l) χ_a + (s/l) χ_b + Σ_j η_j sin(jπs/l),
+    χ(s) = (1 − s/l) χ_a + (s/l) χ_b + Σ_j y_j sin(jπs/l),
 
 which gives the matrices of :meth:`Rod.mass_matrix` and :meth:`Rod.stiffness_matrix`. The linear shapes are those of a
 massless spring, and no spring couples them to the modes: a rod adds to the spring in its place, and takes nothing away.
-Without reduction a rod answers an oscillation of its ends by k [[β cot β, −β/sin β], [−β/sin β, β cot β]],
-β = ωl/c_s, from which :mod:`facegear.mechanics.exact_rods` has the exact natural frequencies.
+Without reduction a rod answers an oscillation of its ends by k [[x cot x, −x/sin x], [−x/sin x, x cot x]],
+x = ωl/c_s, from which :mod:`facegear.mechanics.exact_rods` has the exact natural frequencies.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class Rod:
 
     @property
     def mass_matrix(self) -> FloatArray:
-        """Mass of (χ_a, χ_b, η_1 … η_n), shape (2 + n, 2 + n) [kg m²]."""
+        """Mass of (χ_a, χ_b, y_1 … y_n), shape (2 + n, 2 + n) [kg m²]."""
         numbers = np.arange(1, self.modes + 1)
         matrix = np.diag(np.full(2 + self.modes, 0.5))
         matrix[:2, :2] = [[1.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 3.0]]
@@ -113,14 +113,14 @@ class Rod:
 
     @property
     def stiffness_matrix(self) -> FloatArray:
-        """Stiffness of (χ_a, χ_b, η_1 … η_n), shape (2 + n, 2 + n) [N m/rad]."""
+        """Stiffness of (χ_a, χ_b, y_1 … y_n), shape (2 + n, 2 + n) [N m/rad]."""
         matrix = np.diag(np.concatenate([np.ones(2), (np.pi * np.arange(1, self.modes + 1)) ** 2 / 2.0]))
         matrix[0, 1] = matrix[1, 0] = -1.0
         return np.asarray(self.stiffness * matrix)
 
     @property
     def damping_matrix(self) -> FloatArray:
-        """Damping of (χ_a, χ_b, η_1 … η_n), c/k times the stiffness, shape (2 + n, 2 + n) [N m s/rad]."""
+        """Damping of (χ_a, χ_b, y_1 … y_n), c/k times the stiffness, shape (2 + n, 2 + n) [N m s/rad]."""
         return self.damping / self.stiffness * self.stiffness_matrix
 
     def dynamic_stiffness(self, frequency: float) -> FloatArray:
@@ -185,7 +185,7 @@ class Shaft:
             raise ValueError(f"start must be another coordinate than end, got {self.start!r} for both")
 
     def placed(self, own: FloatArray, size: int, first: int) -> FloatArray:
-        """Put a matrix of (χ_a, χ_b, η_1 …) into one of `size` coordinates, with the modes from `first` on."""
+        """Put a matrix of (χ_a, χ_b, y_1 …) into one of `size` coordinates, with the modes from `first` on."""
         ends = (self.start, self.end)
         places = [*(-1 if place is None else place for place in ends), *range(first, first + len(own) - 2)]
         rows = np.eye(size)[places]
@@ -206,7 +206,7 @@ def with_mass(system: PeriodicSystem, shafts: Sequence[Shaft]) -> PeriodicSystem
     Returns
     -------
     PeriodicSystem
-        Coordinates of the system, then the modes η_j of each rod [rad].
+        Coordinates of the system, then the modes y_j of each rod [rad].
 
     Raises
     ------

@@ -43,7 +43,8 @@ def craig_bampton(k, length, G, rho, modes, elements):
     inner, count = slice(1, -1), len(mass)
     basis = np.zeros((count, 2 + modes))
     basis[:, 0], basis[:, 1] = np.linspace(1, 0, count), np.linspace(0, 1, count)
-    _, vectors = eigh(stiffness[inner, inner], mass[inner, inner], subset_by_index=[0, modes - 1])
+    if modes:
+        _, vectors = eigh(stiffness[inner, inner], mass[inner, inner], subset_by_index=[0, modes - 1])
     for number in range(modes):
         shape = vectors[:, number]
         # Amplitude 1, and rising from the first end, by least squares on a sine.
@@ -53,15 +54,19 @@ def craig_bampton(k, length, G, rho, modes, elements):
 
 
 def gearbox(n, l1, l2, G, rho, elements):
-    """Mass, stiffness and damping of J1, J2, Jo and all nodes inside both shafts, without the mesh."""
-    inside = 2 * elements - 1
-    size = 3 + 2 * inside
+    """Mass, stiffness and damping of J1, J2, Jo and all nodes inside both shafts, without the mesh.
+
+    `elements` are those of the input shaft and of the output shaft.
+    """
+    inside = 2 * elements[0] - 1
+    size = 3 + inside + 2 * elements[1] - 1
     M, K, C = (np.zeros((size, size)) for _ in range(3))
     M[:3, :3] = np.diag([n.J1, n.J2, n.Jo])
     first = [*range(3, 3 + inside), 0]  # the end that turns at a constant speed left out
     second = [1, *range(3 + inside, size), 2]
-    for places, k, c, length, held in ((first, n.k1, n.c1, l1, 1), (second, n.k2, n.c2, l2, 0)):
-        stiffness, mass = (matrix[held:, held:] for matrix in rod(k, length, G, rho, elements))
+    shafts = ((first, n.k1, n.c1, l1, 1), (second, n.k2, n.c2, l2, 0))
+    for (places, k, c, length, held), count in zip(shafts, elements, strict=True):
+        stiffness, mass = (matrix[held:, held:] for matrix in rod(k, length, G, rho, count))
         M[np.ix_(places, places)] += mass
         K[np.ix_(places, places)] += stiffness
         C[np.ix_(places, places)] += c / k * stiffness

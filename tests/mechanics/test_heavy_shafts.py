@@ -34,7 +34,7 @@ def test_names_say_what_moves():
 
 def test_frequencies_are_those_of_elements_and_exact():
     n = numbers_of(QUIET)
-    mass, _, stiffness = gearbox(n, 0.03, 0.4, G, RHO, 60)
+    mass, _, stiffness = gearbox(n, 0.03, 0.4, G, RHO, (60, 60))
     stiffness[:3, :3] += QUIET.mean_stiffness - QUIET.gearbox.in_si.stiffness_matrix
     elements = np.sqrt(eigh(stiffness, mass, eigvals_only=True)[:5])
     exact = MODEL.exact_frequencies(5)
@@ -81,7 +81,7 @@ def test_growth_is_that_of_reduced_elements_by_dop853(speed_rpm):
 def test_growth_is_that_of_many_elements_by_dop853():
     n = numbers_of(QUIET)
     own = fg.growth_rate(replace(MODEL, modes=12).system(float(rad_per_s(506.0))), Radau())
-    assert own == pytest.approx(growth_rate(n, gearbox(n, 0.03, 0.4, G, RHO, 6), 506.0), rel=2e-3)
+    assert own == pytest.approx(growth_rate(n, gearbox(n, 0.03, 0.4, G, RHO, (1, 8)), 506.0), rel=2e-3)
 
 
 def test_maps_tongues_and_sensitivities_take_it():
