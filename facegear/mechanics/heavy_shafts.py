@@ -23,11 +23,11 @@ from facegear.mechanics.rods import (
     shear_modulus,
     with_mass,
 )
-from facegear.mechanics.torsional import Torsional
+from facegear.mechanics.torsional import InSi, Torsional
 from facegear.support.parameters import STEEL, Material, designed, integer_within, keep, within
 from facegear.support.types import FloatArray
 
-# Lengths of shafts [m]: the shortest disks, and as long as an airframe.
+# Lengths of shafts with mass [m]: thin disks, and as long as an airframe.
 _SHORTEST, _LONGEST = 1e-4, 20.0
 
 
@@ -40,7 +40,7 @@ class HeavyShafts:
     torsional : Torsional
         The gearbox with massless shafts (chapter 7), whose stiffnesses and dampings the shafts keep.
     input_length, output_length : float
-        l1, l2 of the shafts [m], from 0.0001 to 20.
+        l1, l2 of the shafts [m], from 0.0001 to 20, or 0 for a massless one.
     modes : int
         Number n of modes of each shaft with both ends held, from 0 to 50.
     material : Material
@@ -73,38 +73,46 @@ class HeavyShafts:
         if not isinstance(self.material, Material):
             raise TypeError(f"material must be a Material, got {named(self.material)}")
         for name in ("input_length", "output_length"):
-            keep(self, **{name: within(name, getattr(self, name), _SHORTEST, _LONGEST, "m")})
+            keep(self, **{name: _checked_length(name, getattr(self, name))})
         keep(self, modes=integer_within("modes", self.modes, 0, MOST_MODES))
 
     @property
+    def gearbox(self) -> InSi:
+        """That of `torsional`."""
+        return self.torsional.gearbox
+
+    @property
     def input_rod(self) -> Rod:
-        """Shaft from the input to the pinion."""
+        """Shaft from the input to the pinion, if it has mass."""
         box = self.torsional.gearbox.in_si
         return Rod(box.input_stiffness, self.input_length, box.input_damping, self.modes, self.material)
 
     @property
     def output_rod(self) -> Rod:
-        """Shaft from the face gear to the load."""
+        """Shaft from the face gear to the load, if it has mass."""
         box = self.torsional.gearbox.in_si
         return Rod(box.output_stiffness, self.output_length, box.output_damping, self.modes, self.material)
 
     @property
-    def shafts(self) -> tuple[Shaft, Shaft]:
-        """Both rods between the coordinates of chapter 7."""
-        return Shaft(self.input_rod, end=0), Shaft(self.output_rod, start=1, end=2)
+    def shafts(self) -> tuple[Shaft, ...]:
+        """Rods between the coordinates of chapter 7, of those shafts that have mass."""
+        first = (Shaft(self.input_rod, end=0),) if self.input_length else ()
+        return (*first, Shaft(self.output_rod, start=1, end=2)) if self.output_length else first
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Angles χ1, χ2, χo (7-9) and the modes y_j of the input shaft, then of the output shaft."""
+        lengths = {"input shaft": self.input_length, "output shaft": self.output_length}
         modes = [
             Coordinate(f"{shaft}, mode {number}", "rad", shaft)
-            for shaft in ("input shaft", "output shaft")
+            for shaft, length in lengths.items()
+            if length
             for number in range(1, self.modes + 1)
         ]
         return (*self.torsional.coordinates, *modes)
 
     def natural_frequencies(self) -> FloatArray:
-        """Natural frequencies of the mean system at rest, undamped, ascending, shape (3 + 2n,) [rad/s]."""
+        """Natural frequencies of the mean system at rest, undamped, ascending, one a coordinate [rad/s]."""
         # Neither mass nor constant stiffness depends on speed.
         system = self.system(1.0)
         stiffness = system.stiffness.copy()
@@ -126,28 +134,28 @@ class HeavyShafts:
     @property
     def largest_lengths(self) -> tuple[float, float]:
         """Lengths π G d⁴/(32 k) [m] from which on solid shafts of these stiffnesses are thicker than that."""
-        scale = math.pi * shear_modulus(self.material) / 32.0
-        first, second = (
-            scale * diameter**4 / rod.stiffness
-            for diameter, rod in zip(self.largest_diameters, (self.input_rod, self.output_rod), strict=True)
-        )
-        return first, second
+        scale, box = math.pi * shear_modulus(self.material) / 32.0, self.torsional.gearbox.in_si
+        first, second = self.largest_diameters
+        return scale * first**4 / box.input_stiffness, scale * second**4 / box.output_stiffness
 
     @property
     def not_buildable(self) -> tuple[str, ...]:
         """What cannot be built, and why, one sentence a shaft; empty if all can."""
-        names = (
-            ("input shaft", "the root circle of the pinion"),
-            ("output shaft", "the inner edge of the teeth of the face gear"),
+        edges = ("the root circle of the pinion", "the inner edge of the teeth of the face gear")
+        rows = zip(
+            ("input shaft", "output shaft"),
+            (self.input_length, self.output_length),
+            self.largest_lengths,
+            self.largest_diameters,
+            edges,
+            strict=True,
         )
-        rods = (self.input_rod, self.output_rod)
+        # Of one stiffness, the fourth power of the diameter grows as the length.
         return tuple(
-            f"{name} of {1e3 * rod.diameter:.3g} mm diameter is thicker than {edge} ({1e3 * room:.3g} mm): at most "
-            f"{1e3 * length:.3g} mm long"
-            for (name, edge), rod, room, length in zip(
-                names, rods, self.largest_diameters, self.largest_lengths, strict=True
-            )
-            if rod.diameter > room
+            f"{name} of {1e3 * room * (length / longest) ** 0.25:.3g} mm diameter is thicker than {edge} "
+            f"({1e3 * room:.3g} mm): at most {1e3 * longest:.3g} mm long"
+            for name, length, longest, room, edge in rows
+            if length > longest
         )
 
     def system(self, speed: float) -> PeriodicSystem:
@@ -169,3 +177,12 @@ class HeavyShafts:
             If `speed` is not a finite number greater than 0.
         """
         return with_mass(self.torsional.system(speed), self.shafts)
+
+
+def _checked_length(name: str, value: object) -> float:
+    length = within(name, value, 0.0, _LONGEST, "m")
+    if 0.0 < length < _SHORTEST:
+        raise ValueError(
+            f"{name} must be 0 for a massless shaft, or at least {_SHORTEST:g} m, got {length!r} m"
+        )
+    return length

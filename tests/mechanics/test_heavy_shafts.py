@@ -104,6 +104,20 @@ def test_maps_tongues_and_sensitivities_take_it():
     assert derivative == pytest.approx((moved[1] - moved[0]) / (2.0 * step), rel=1e-3)
 
 
+def test_shafts_without_length_are_massless():
+    none = HeavyShafts(QUIET, 0.0, 0.0)
+    speed = float(rad_per_s(600.0))
+    assert none.coordinates == QUIET.coordinates
+    assert none.not_buildable == ()
+    assert fg.growth_rate(none.system(speed), Radau()) == pytest.approx(
+        fg.growth_rate(QUIET.system(speed), Radau()), rel=1e-9
+    )
+    output = replace(MODEL, input_length=0.0)
+    assert [coordinate.part for coordinate in output.coordinates[3:]] == ["output shaft"] * 2
+    np.testing.assert_allclose(output.natural_frequencies()[:2], MODEL.natural_frequencies()[:2], rtol=1e-3)
+    np.testing.assert_allclose(output.exact_frequencies(2), output.natural_frequencies()[:2], rtol=1e-3)
+
+
 def test_forced_response_takes_it():
     wave = fg.PiecewiseChebyshev.fit(lambda x, piece: 1e-5 * np.cos(2.0 * np.pi * x), [0.0])
     short = HeavyShafts(BASE, 1e-3, 1e-3)
@@ -131,7 +145,12 @@ def test_what_cannot_be_built_is_named():
     ("bad", "error", "words"),
     [
         ({"torsional": "gearbox"}, TypeError, "torsional must be a Torsional"),
-        ({"input_length": 0.0}, ValueError, "input_length"),
+        (
+            {"input_length": 1e-5},
+            ValueError,
+            "input_length must be 0 for a massless shaft, or at least 0.0001 m",
+        ),
+        ({"input_length": -0.1}, ValueError, "input_length"),
         ({"output_length": 30.0}, ValueError, "output_length"),
         ({"output_length": "long"}, TypeError, "output_length"),
         ({"modes": 99}, ValueError, "modes"),
