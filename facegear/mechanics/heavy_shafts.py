@@ -23,7 +23,7 @@ from facegear.mechanics.rods import (
     shear_modulus,
     with_mass,
 )
-from facegear.mechanics.torsional import InSi, Torsional
+from facegear.mechanics.torsional import InSi, Torsional, natural_speed
 from facegear.support.parameters import STEEL, Material, designed, integer_within, keep, within
 from facegear.support.types import FloatArray
 
@@ -119,6 +119,10 @@ class HeavyShafts:
         stiffness[:3, :3] = self.torsional.mean_stiffness
         exponents = natural_exponents(system.mass, np.zeros_like(stiffness), stiffness)
         return np.sort(exponents.imag)[len(stiffness) :]
+
+    def natural_speeds(self) -> FloatArray:
+        """Speeds of the face gear at which the mesh frequency is a natural one (7-20), one a coordinate [rad/s]."""
+        return natural_speed(self.torsional.drive, self.natural_frequencies())
 
     def exact_frequencies(self, count: int) -> FloatArray:
         """As :meth:`natural_frequencies`, the lowest `count` of them, with rods that are not reduced to modes."""

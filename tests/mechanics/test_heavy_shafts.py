@@ -41,6 +41,7 @@ def test_frequencies_are_those_of_elements_and_exact():
     np.testing.assert_allclose(exact, elements, rtol=1e-6)
     reduced = MODEL.natural_frequencies()
     assert len(reduced) == 7
+    np.testing.assert_allclose(MODEL.natural_speeds(), reduced / 107, rtol=1e-14)
     np.testing.assert_allclose(reduced[:3], exact[:3], rtol=2e-3)
     np.testing.assert_allclose(replace(MODEL, modes=30).natural_frequencies()[:5], exact, rtol=1e-5)
 
@@ -127,6 +128,13 @@ def test_forced_response_takes_it():
         for model in (short, BASE)
     )
     np.testing.assert_allclose(heavy, massless, rtol=1e-3)
+    swept = fg.frequency_response(
+        fg.Excited(MODEL, transmission_error=wave), rad_per_s([380.0, 400.0, 420.0]), jobs=1
+    )
+    one = fg.steady_response(fg.Excited(MODEL, transmission_error=wave).system(speed))
+    np.testing.assert_allclose(swept.force_mean[1], one.mean(one.contact_forces), rtol=1e-6)
+    # Resonance of the second mode with the second harmonic of the mesh.
+    assert "2/2" in swept.peak_label.values.tolist()
 
 
 def test_what_cannot_be_built_is_named():
