@@ -1,13 +1,14 @@
 """What measured frequencies and decay rates say of the losses of a model's parameters.
 
-A loss ℓ makes a parameter p (1 − ℓ). Characteristic exponents μ(ℓ) of some motions are measured with independent
+A loss d makes a parameter p (1 − d). Characteristic exponents Λ(d) of some motions are measured with independent
 normal errors of known deviations; the losses that fit best are least squares over the deviations. No unbiased estimate
-scatters less than the Cramér–Rao bound (JᵀJ)⁻¹, J the derivatives of what is measured over the deviations, and least
-squares attain it where errors are small (Kay, Fundamentals of Statistical Signal Processing, 1993).
+scatters less than the Cramér–Rao bound (GᵀG)⁻¹, G the derivatives of what is measured over the deviations, and least
+squares attain it where errors are small (Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,7 +24,7 @@ from facegear.support.types import ComplexArray, FloatArray
 
 # Losses between which a fit looks: nothing is left of a part, or it is twice as stiff.
 _LEAST, _MOST = -1.0, 0.95
-# Condition of J from which on some mix of losses is not told at all.
+# Condition of G from which on some mix of losses is not told at all.
 _UNTOLD = 1e8
 
 
@@ -43,7 +44,7 @@ class Survey:
     motions : sequence of int
         m motions that are measured, numbered among the oscillating ones of the intact model, slowest decay first.
     deviations : array_like, shape (m, 2)
-        Standard deviations of decay rate and frequency, Re μ and Im μ [1/s, rad/s]; infinite for what is not measured.
+        Standard deviations of decay rate and frequency, Re Λ and Im Λ [1/s, rad/s]; infinite for what is not measured.
 
     Raises
     ------
@@ -99,7 +100,7 @@ class Survey:
         return [self.intact.oscillating[motion] for motion in self.motions]
 
     def damaged(self, losses: ArrayLike) -> Model:
-        """Return the model with losses ℓ, shape (P,), each below 1."""
+        """Return the model with losses d, shape (P,), each below 1."""
         model = self.model
         for name, value, loss in zip(self.parameters, self._values, self._losses(losses), strict=True):
             model = replace_parameter(model, name, value * (1.0 - loss))
@@ -128,7 +129,7 @@ class Survey:
         exponents : complex array, shape (m,)
             [1/s].
         derivatives : complex array, shape (m, P)
-            dμ/dℓ [1/s].
+            dΛ/dd [1/s].
         """
         found = exponent_sensitivity(self.damaged(losses), self.speed, self.parameters)
         numbers = np.array(self.intact.numbers_in(found))[self._numbers]
@@ -141,7 +142,7 @@ class Survey:
         return np.asarray(exponents - 1j * turn * np.round((exponents - to).imag / turn), dtype=complex)
 
     def jacobian(self, losses: ArrayLike) -> FloatArray:
-        """Return J, derivatives of decay rates, then frequencies, over their deviations, shape (2m, P)."""
+        """Return G, derivatives of decay rates, then frequencies, over their deviations, shape (2m, P)."""
         return self._over_deviations(self.expected(losses)[1])
 
     def _over_deviations(self, values: ComplexArray) -> FloatArray:
@@ -150,10 +151,8 @@ class Survey:
         return np.asarray((parts.T / self.deviations.T.ravel()).T, dtype=float)
 
     def condition(self, losses: ArrayLike) -> float:
-        """Condition of J [-]: how much worse the worst told mix of losses is told than the best; infinite if not."""
-        singular = np.linalg.svd(self.jacobian(losses), compute_uv=False)
-        told = singular.size == self._values.size and singular[-1] * _UNTOLD > singular[0]
-        return float(singular[0] / singular[-1]) if told else float("inf")
+        """Condition of G [-]: how much worse the worst told mix of losses is told than the best; infinite if not."""
+        return _condition(self.jacobian(losses))
 
     def bound(self, losses: ArrayLike) -> FloatArray:
         """Return the Cramér–Rao bound of the covariance of losses told from one measurement, shape (P, P) [-].
@@ -163,17 +162,7 @@ class Survey:
         ValueError
             If what is measured does not tell all of them.
         """
-        self._require_told(losses)
-        root = np.linalg.qr(self.jacobian(losses), mode="r")
-        inverse = np.linalg.inv(root)
-        return np.asarray(inverse @ inverse.T, dtype=float)
-
-    def _require_told(self, losses: ArrayLike) -> None:
-        if not np.isfinite(self.condition(losses)):
-            raise ValueError(
-                f"motions must tell {self._values.size} losses ({', '.join(self.parameters)}), but some mix of these "
-                f"changes nothing that is measured of motions {self.motions}; measure more motions, or decay rates too"
-            )
+        return bound_together((self,), losses)
 
     def untold(self, losses: ArrayLike) -> FloatArray:
         """Mix of losses, of unit length, that changes least of what is measured, shape (P,)."""
@@ -186,7 +175,7 @@ class Survey:
         Parameters
         ----------
         measured : array_like of complex, shape (m,)
-            μ [1/s], any image; the real part counts for nothing where it has no finite deviation.
+            Λ [1/s], any image; the real part counts for nothing where it has no finite deviation.
         start : array_like, shape (P,), optional
             Losses to begin with; default none.
 
@@ -207,7 +196,7 @@ class Survey:
                 f"measured must be {len(self.motions)} finite exponents, one a motion; got {values.tolist()}"
             )
         first = np.zeros(self._values.size) if start is None else self._losses(start)
-        self._require_told(first)
+        self.bound(first)  # refuses what is not told
         last: dict[bytes, tuple[FloatArray, FloatArray]] = {}
 
         def both(losses: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -230,6 +219,45 @@ class Survey:
         if not fit.success:
             raise ArithmeticError(f"no losses were found that fit the measured exponents: {fit.message}")
         return np.asarray(fit.x, dtype=float)
+
+
+def bound_together(surveys: Sequence[Survey], losses: ArrayLike) -> FloatArray:
+    """Cramér–Rao bound of losses told from several surveys together, such as at several speeds, shape (P, P) [-].
+
+    A periodic system has other exponents at another speed, so that the same motions say something else there.
+
+    Parameters
+    ----------
+    surveys : sequence of Survey
+        With the same parameters.
+    losses : array_like, shape (P,)
+
+    Raises
+    ------
+    ValueError
+        If the parameters differ, or some mix of losses is not told.
+    """
+    integer_at_least("number of surveys", len(surveys), 1)
+    names = surveys[0].parameters
+    if any(survey.parameters != names for survey in surveys):
+        raise ValueError(
+            f"surveys must have the same parameters, got {[survey.parameters for survey in surveys]}"
+        )
+    rows = np.concatenate([survey.jacobian(losses) for survey in surveys])
+    if not np.isfinite(_condition(rows)):
+        raise ValueError(
+            f"surveys must tell {len(names)} losses ({', '.join(names)}), but some mix of these changes nothing that "
+            "is measured; measure more motions, at more speeds, or decay rates too"
+        )
+    inverse = np.linalg.inv(np.linalg.qr(rows, mode="r"))
+    return np.asarray(inverse @ inverse.T, dtype=float)
+
+
+def _condition(rows: FloatArray) -> float:
+    """Condition of derivatives (2m, P), infinite where some mix of losses is not told."""
+    singular = np.linalg.svd(rows, compute_uv=False)
+    told = singular.size == rows.shape[1] and singular[-1] * _UNTOLD > singular[0]
+    return float(singular[0] / singular[-1]) if told else float("inf")
 
 
 def drawn(exponents: ArrayLike, deviations: ArrayLike, count: int, seed: int) -> ComplexArray:

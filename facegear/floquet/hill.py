@@ -1,12 +1,12 @@
 """Hill's matrix: a periodic system as a constant one of many more coordinates (harmonic balance).
 
-In x = t/T0 the scaled state obeys X' = B(x) X. With X = e^{μt} Σ X_m e^{2πimx} and the Fourier coefficients B_j of B
+In x = t/T0 the scaled state obeys X' = B(x) X. With X = e^{Λt} Σ X_m e^{2πimx} and the Fourier coefficients B_j of B
 the harmonics X_m obey
 
-    μ T0 X_m = Σ_k B_{m−k} X_k − 2πi m X_m,
+    Λ T0 X_m = Σ_k B_{m−k} X_k − 2πi m X_m,
 
-a constant matrix, infinite but for the harmonics −H ... H that are kept. Each characteristic exponent μ stands among
-its eigenvalues once for every m, as μ + im·2π/T0, and near the ends of the series stand others that belong to nothing:
+a constant matrix, infinite but for the harmonics −H ... H that are kept. Each characteristic exponent Λ stands among
+its eigenvalues once for every m, as Λ + im·2π/T0, and near the ends of the series stand others that belong to nothing:
 eigenvalues have to be sorted. :func:`in_base_strip` and :func:`by_mean_harmonic` do so, and :func:`without_sorting`
 does without: in the exponential of the matrix the blocks of column 0 add up to Φ (Bayer and Leine, Nonlinear Dynamics
 111, 2023).
@@ -185,7 +185,7 @@ def without_sorting(system: PeriodicSystem, harmonics: int) -> ComplexArray:
 
 
 def exponents(system: PeriodicSystem, method: Method | None = None) -> ComplexArray:
-    """Characteristic exponents μ = ln(λ)/T0 from the multipliers, imaginary parts between −π/T0 and π/T0.
+    """Characteristic exponents Λ = ln(λ)/T0 from the multipliers, imaginary parts between −π/T0 and π/T0.
 
     Parameters
     ----------

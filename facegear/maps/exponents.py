@@ -1,7 +1,7 @@
 """How all characteristic exponents of a model change with its parameters, decay rates and frequencies alike.
 
 With left and right eigenvectors y and x of Φ at a simple multiplier λ, dλ = yᴴ dΦ x / (yᴴ x), and the exponent
-μ = ln(λ)/T0 changes by dμ = dλ/(λ T0) − μ dT0/T0.
+Λ = ln(λ)/T0 changes by dΛ = dλ/(λ T0) − Λ dT0/T0.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class ExponentSensitivity:
     ----------
     parameters : tuple of str
     exponents : complex array, shape (2n,)
-        μ [1/s], imaginary parts between −π/T0 and π/T0, slowest decay first; of a conjugate pair the one above the
+        Λ [1/s], imaginary parts between −π/T0 and π/T0, slowest decay first; of a conjugate pair the one above the
         real axis first.
     derivatives : complex array, shape (2n, P)
-        dμ/dp [1/s per unit of the parameter] of that μ. By the speed, an image μ + 2πik/T0 has k times dω more.
+        dΛ/dp [1/s per unit of the parameter] of that Λ. By the speed, an image Λ + 2πik/T0 has k times dω more.
     right, left : complex array, shape (2n, 2n)
         Columns x and rows yᴴ of Φ in scaled coordinates, yᴴ x = 1.
     period : float

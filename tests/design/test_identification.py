@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from facegear.design.identification import Survey, drawn, scatter_over_bound
+from facegear.design.identification import Survey, bound_together, drawn, scatter_over_bound
 from facegear.floquet.hill import exponents
 from facegear.floquet.models import replace_parameter, value_of
 from facegear.mechanics.gearboxes import FIGURES
@@ -79,12 +79,25 @@ def test_frequencies_of_two_motions_do_not_tell_three_losses(motions):
     with pytest.raises(ValueError, match="must tell 3 losses"):
         two.bound(LOSSES)
     with pytest.raises(ValueError, match="must tell 3 losses"):
+        bound_together([two, two], LOSSES)
+    with pytest.raises(ValueError, match="must tell 3 losses"):
         two.identified(two.expected(LOSSES)[0])
     # Along the mix that is not told nothing changes to first order.
     change = two.jacobian(LOSSES) @ two.untold(LOSSES)
     assert np.abs(change).max() < 1e-9 * np.abs(two.jacobian(LOSSES)).max()
     # With decay rates they do, badly.
     assert 20.0 < survey(motions, decays=1.0).condition(LOSSES) < 1e5
+
+
+def test_two_speeds_tell_what_one_does_not():
+    """The bound of all data together, from normal equations."""
+    two = survey((0, 1))
+    other = Survey(GEARBOX, float(rad_per_s(500.0)), NAMES, (0, 1), two.deviations)
+    rows = np.concatenate([two.jacobian(LOSSES), other.jacobian(LOSSES)])
+    np.testing.assert_allclose(bound_together([two, other], LOSSES), np.linalg.inv(rows.T @ rows), rtol=1e-8)
+    assert np.sqrt(np.diag(bound_together([two, other], LOSSES))).max() < 0.02
+    with pytest.raises(ValueError, match="same parameters"):
+        bound_together([two, Survey(GEARBOX, SPEED, NAMES[:2], (0, 1), two.deviations)], LOSSES)
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def test_exponents_are_those_of_another_integrator(name):
 
 
 def test_square_wave_in_closed_form():
-    """Meissner: cos μT from two pieces of constant stiffness, without damping."""
+    """Meissner: cos ΛT from two pieces of constant stiffness, without damping."""
     system = Hill(0.4, square_wave(0.37)).system(FREQUENCY)
     fast, slow = np.sqrt(1.4), np.sqrt(0.6)
     a, b = fast * 0.37 * PERIOD, slow * 0.63 * PERIOD
@@ -123,7 +123,7 @@ def test_mean_harmonics_number_the_images():
     first = by_mean_harmonic(spectrum)[0]
     middle = int(np.abs(spectrum.exponents - first).argmin())
     image = int(np.abs(spectrum.exponents - first - 3j * turn).argmin())
-    # e^{μt} p(t) is the same motion with the factor e^{−3iωt} put into p.
+    # e^{Λt} p(t) is the same motion with the factor e^{−3iωt} put into p.
     assert spectrum.mean_harmonics[image] == pytest.approx(spectrum.mean_harmonics[middle] - 3.0, abs=1e-6)
 
 

@@ -22,7 +22,7 @@ def nearest(found, to):
 
 
 def test_constant_system_in_closed_form():
-    """μ = −ϑω0 ± iω0 √(1 − ϑ²)."""
+    """Λ = −ϑω0 ± iω0 √(1 − ϑ²)."""
     model = Mathieu(depth=1e-12, damping_ratio=0.1, natural_frequency=1.5)
     found = exponent_sensitivity(model, 4.0, ["damping_ratio", "natural_frequency"])
     root = np.sqrt(1.0 - 0.01)
