@@ -3,9 +3,10 @@
 A signal of one revolution, N slots of S samples each, is what every slot has in common, plus a times a pattern that
 begins at slot j, cyclically, plus white noise of deviation σ. What is common to the slots is taken off signal and
 pattern. The slot on whose pattern the rest projects most is the most likely one for any a > 0 (Kay, Fundamentals of
-Statistical Signal Processing: Detection Theory, 1998), and that projection over the energy of the pattern is the estimate of a with the
-least variance, σ²/‖h‖². Slot k is taken for slot j with the probability Q(a ‖h_j − h_k‖/(2σ)) if these two are all
-there is, which bounds the rate of errors from both sides: by the largest of these from below, by their sum from above.
+Statistical Signal Processing: Detection Theory, 1998), and that projection over the energy of the pattern is the
+estimate of a with the least variance, σ²/‖h‖². Slot k is taken for slot j with the probability Q(a ‖h_j − h_k‖/(2σ)) if
+these two are all there is, which bounds the rate of errors from both sides: by the largest of these from below, by
+their sum from above.
 """
 
 from __future__ import annotations
