@@ -14,6 +14,7 @@ from scipy.optimize import linear_sum_assignment
 
 from facegear.floquet.models import Model, system_at
 from facegear.floquet.multipliers import Method
+from facegear.floquet.stepping import Family
 from facegear.maps.sensitivity import SPEED, system_derivative, transition_derivatives
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -36,7 +37,9 @@ class ExponentSensitivity:
     derivatives : complex array, shape (2n, P)
         dΛ/dp [1/s per unit of the parameter] of that Λ. By the speed, an image Λ + 2πik/T0 has k times dω more.
     right, left : complex array, shape (2n, 2n)
-        Columns x and rows yᴴ of Φ in scaled coordinates, yᴴ x = 1.
+        Columns x and rows yᴴ of Φ in the state (q, q̇), yᴴ x = 1.
+    scale : array, shape (2n, 2n)
+        To energy-like coordinates of the state, in which vectors are compared.
     period : float
         T0 [s].
     """
@@ -46,6 +49,7 @@ class ExponentSensitivity:
     derivatives: ComplexArray
     right: ComplexArray
     left: ComplexArray
+    scale: FloatArray
     period: float
 
     @property
@@ -56,8 +60,9 @@ class ExponentSensitivity:
 
     def numbers_in(self, other: ExponentSensitivity) -> list[int]:
         """Return the number that each exponent has in another, nearby set: the two whose vectors fit best."""
-        fit = np.abs(self.left @ other.right) / np.linalg.norm(other.right, axis=0)
-        fit /= np.linalg.norm(self.left, axis=1)[:, None]
+        rows, columns = self.left @ np.linalg.inv(self.scale), self.scale @ other.right
+        fit = np.abs(rows @ columns) / np.linalg.norm(columns, axis=0)
+        fit /= np.linalg.norm(rows, axis=1)[:, None]
         return [int(number) for number in linear_sum_assignment(fit, maximize=True)[1]]
 
 
@@ -96,7 +101,8 @@ def exponent_sensitivity(
            [-1.]])
     """
     transition, changes = transition_derivatives(model, speed, parameters, method)
-    period = system_at(model, speed).period
+    system = system_at(model, speed)
+    period, family = system.period, Family([system])
     values, right = np.linalg.eig(transition)
     order = np.lexsort((-values.imag, -np.abs(values).round(12)))
     values, right = values[order].astype(complex), right[:, order].astype(complex)
@@ -109,7 +115,15 @@ def exponent_sensitivity(
         [0.0 if name != SPEED else system_derivative(model, speed, name).period for name in parameters]
     )
     derivatives = d_values / (values[:, None] * period) - exponents[:, None] * d_period / period
-    return ExponentSensitivity(tuple(parameters), exponents, derivatives, right, left, period)
+    return ExponentSensitivity(
+        tuple(parameters),
+        exponents,
+        derivatives,
+        np.asarray(family.inverse_scale @ right, dtype=complex),
+        np.asarray(left @ family.scale, dtype=complex),
+        family.scale,
+        period,
+    )
 
 
 def _require_known(values: ComplexArray, distances: FloatArray, norm: float, speed: float) -> None:

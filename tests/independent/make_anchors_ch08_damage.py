@@ -73,6 +73,19 @@ def square():
     return from_trace(trace, DAMPING)
 
 
+def damped():
+    """Return that of q̈ + (0.02 + 0.3 w) q̇ + q = 0, w = 1 for 0.37 of the period and else 0."""
+    with mpmath.workdps(30):
+        period, product = 2 * mpmath.pi / OMEGA, mpmath.eye(2)
+        for part, damping in ((mpmath.mpf("0.37"), "0.32"), (mpmath.mpf("0.63"), "0.02")):
+            product = (
+                mpmath.expm(mpmath.matrix([[0, 1], [-1, -mpmath.mpf(damping)]]) * part * period) * product
+            )
+        values = mpmath.eig(product, left=False, right=False)
+        exponents = [complex(mpmath.log(value) / period) for value in values]
+    return max(exponents, key=lambda x: x.imag)
+
+
 def kicked():
     """Return that of a mass 0.3 on u = b(t) q: p = q̇ + 0.3 b d(bq)/dt, ṗ = −q − 0.02 q̇ + 0.3 ḃ d(bq)/dt."""
     period = 2 * math.pi / OMEGA
@@ -97,7 +110,7 @@ def kicked():
 
 
 def hill(stored):
-    for number, exponent in enumerate((mathieu(), tent(), square(), kicked())):
+    for number, exponent in enumerate((mathieu(), tent(), square(), damped(), kicked())):
         for name, value in (("decay", exponent.real), ("frequency", exponent.imag)):
             yield {"variable": name, "at": {"system": number}, "value": float(value), "atol": 1e-11}
 

@@ -5,6 +5,7 @@ import pytest
 
 from facegear.floquet.hill import exponents
 from facegear.floquet.models import replace_parameter, value_of
+from facegear.floquet.multipliers import transition_matrix
 from facegear.maps.exponents import exponent_sensitivity
 from facegear.maps.sensitivity import sensitivity
 from facegear.mechanics.classical import Mathieu
@@ -66,6 +67,15 @@ def test_growth_rate_is_the_first_one():
     whole, critical = (f(GEARBOX, SPEED, NAMES) for f in (exponent_sensitivity, sensitivity))
     assert whole.exponents[0].real == pytest.approx(critical.growth_rate, rel=1e-10)
     np.testing.assert_allclose(whole.derivatives[0].real, critical.growth_rate_derivatives, rtol=1e-8)
+
+
+def test_vectors_are_those_of_the_transition_matrix():
+    found = exponent_sensitivity(GEARBOX, SPEED, NAMES)
+    transition = transition_matrix(GEARBOX.system(SPEED))
+    multipliers = np.exp(found.exponents * found.period)
+    size = np.abs(transition @ found.right).max()
+    assert np.abs(transition @ found.right - found.right * multipliers).max() < 1e-8 * size
+    np.testing.assert_allclose(found.left @ found.right, np.eye(6), atol=1e-9)
 
 
 def test_motions_are_told_apart_by_their_vectors():

@@ -12,7 +12,7 @@ from facegear.floquet.hill import HillSpectrum
 from facegear.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, VERMILION, panels, styled
 from facegear.support.types import ComplexArray, FloatArray
 
-_COLOURS = (BLUE, ORANGE, VERMILION, PURPLE)
+_COLOURS = (BLUE, ORANGE, VERMILION, GREEN, PURPLE)
 _PARTS = {
     "input_stiffness": "input shaft",
     "output_stiffness": "output shaft",
@@ -28,7 +28,9 @@ def convergence(data: xr.Dataset) -> Figure:
     routes = data.route.values.tolist()
     figure, axes = panels(1, len(routes), 3.9, sharey=True)
     for ax, (column, route) in zip(axes, enumerate(routes), strict=True):
-        for row, (kind, colour) in enumerate(zip(data.kind.values.tolist(), _COLOURS, strict=False)):
+        for row, (kind, colour) in enumerate(
+            zip(data.kind.values.tolist(), _COLOURS[: data.system.size], strict=True)
+        ):
             errors = data.error.values[row, column]
             ax.loglog(data.harmonics, errors, ".-", color=colour, label=kind if column == 0 else None)
         ax.set_title(route)
@@ -36,7 +38,7 @@ def convergence(data: xr.Dataset) -> Figure:
         ax.set_xticks([2, 8, 32], ["2", "8", "32"])
         ax.xaxis.set_minor_formatter(NullFormatter())
     axes[0].set_ylabel("largest error [1/s]")
-    figure.legend(loc="outside lower center", ncols=4)
+    figure.legend(loc="outside lower center", ncols=5)
     return figure
 
 
