@@ -23,9 +23,12 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue, tongues
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import integer_at_least, rpm
+from facegear.support.types import FloatArray
 
-# Relative step of parameters and speeds in the differences: growth rates are known to 1e-7 or so.
-_STEP = 1e-4
+# Relative step of parameters and speeds in the differences. At a border the critical multiplier leaves the unit circle
+# like a root, and lightly damped modes bend the growth rate within some 1e-5 of the speed; errors of growth rates are
+# the same on both sides but for rounding. Models hold values for the same that are several times closer.
+_STEP = 1e-6
 FOLLOWED = 0.10
 """Size of the changes that are made in earnest."""
 
@@ -114,6 +117,56 @@ def _moved(model: Any, change: float, path: tuple[str, ...], number: int, step: 
     return replace_at(model, path, tuple(values))
 
 
+def slopes_of_tongues(
+    model: Model, changes: Sequence[Change], found: Sequence[Tongue], speeds: tuple[float, float]
+) -> FloatArray:
+    """Differentiate the borders and the growth of tongues by relative changes of a model.
+
+    Parameters
+    ----------
+    model : Model
+    changes : sequence of Change
+        C of them, such as :func:`possible_changes`.
+    found : sequence of Tongue
+        T tongues of the model.
+    speeds : tuple of float
+        Lowest and highest speed that they were looked for in [rad/s]. Borders there do not move.
+
+    Returns
+    -------
+    array, shape (C, T, 3)
+        Of lower and upper border [rad/s] and of the growth rate at the peak [1/s], for a change by its whole value (a
+        hundred percent more; of a phase, by a mesh period). NaN for changes that the model refuses in both directions.
+    """
+    steep = [
+        [None if border in speeds else _by_speed(model, border) for border in (each.lower, each.upper)]
+        for each in found
+    ]
+    slopes = np.full((len(changes), len(found), 3), np.nan)
+    for row, change in zip(slopes, changes, strict=True):
+        sides = _sides(model, change)
+        if not sides:
+            continue
+        for place, tongue in enumerate(found):
+            for end, border in enumerate((tongue.lower, tongue.upper)):
+                slope = steep[place][end]
+                row[place, end] = 0.0 if slope is None else -_by_change(sides, border) / slope
+            row[place, 2] = _by_change(sides, tongue.peak)
+    return slopes
+
+
+def _by_change(sides: list[tuple[float, Any]], speed: float) -> float:
+    """Slope of the growth rate over the relative change, at a speed [rad/s]."""
+    (above, more), (below, less) = sides
+    return (growth_rate(more.system(speed)) - growth_rate(less.system(speed))) / (above - below)
+
+
+def _by_speed(model: Model, speed: float) -> float:
+    step = _STEP * speed
+    above, below = (growth_rate(model.system(speed + sign * step)) for sign in (1, -1))
+    return (above - below) / (2 * step)
+
+
 def effects_of_changes(
     model: Model,
     found: Sequence[Tongue],
@@ -148,11 +201,13 @@ def effects_of_changes(
         followed or the model allows no such value. Names in the coordinate ``change_name``.
     """
     followed = integer_at_least("followed", followed, 0)
-    possible = possible_changes(model) if found else ()
+    changes = possible_changes(model) if found else ()
+    every = slopes_of_tongues(model, changes, found, speeds)
     # What the model refuses in both directions cannot be changed by parts of its value.
-    changed = [(change, sides) for change in possible if (sides := _sides(model, change))]
-    changes = [change for change, _ in changed]
-    slopes = [_slopes(model, sides, found, speeds) for _, sides in changed]
+    taken = [i for i in range(len(changes)) if np.isfinite(every[i]).all()]
+    changes, every = tuple(changes[i] for i in taken), every[taken]
+    strongest = max(range(len(found)), key=lambda i: found[i].growth_rate, default=0)
+    slopes = [((each[:, 1] - each[:, 0]).sum(), each[strongest, 2]) for each in every]
     # Where all speeds are unstable no width changes: growth decides.
     order = sorted(range(len(changes)), key=lambda i: (-abs(slopes[i][0]), -abs(slopes[i][1])))
     after = np.full((len(order), 2), np.nan)
@@ -200,29 +255,6 @@ def _sides(model: Any, change: Change) -> list[tuple[float, Any]]:
     if len(sides) == 1:  # the value stands at the end of its range
         sides.append((0.0, model))
     return sides
-
-
-def _slopes(
-    model: Any, sides: list[tuple[float, Any]], found: Sequence[Tongue], speeds: tuple[float, float]
-) -> tuple[float, float]:
-    """Differentiate the unstable width [rad/s] and the largest growth rate [1/s] by the relative change."""
-    (above, more), (below, less) = sides
-
-    def by_change(speed: float) -> float:
-        return (growth_rate(more.system(speed)) - growth_rate(less.system(speed))) / (above - below)
-
-    def by_speed(speed: float) -> float:
-        step = _STEP * speed
-        ends = (growth_rate(model.system(speed + sign * step)) for sign in (1, -1))
-        return (next(ends) - next(ends)) / (2 * step)
-
-    width = 0.0
-    for tongue in found:
-        for border, sign in ((tongue.lower, -1), (tongue.upper, 1)):
-            if border not in speeds:
-                width -= sign * by_change(border) / by_speed(border)
-    strongest = max(found, key=lambda tongue: tongue.growth_rate)
-    return width, by_change(strongest.peak)
 
 
 def _tried(model: Any, change: Change, size: float) -> Any:

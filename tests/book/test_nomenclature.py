@@ -59,7 +59,7 @@ ALLOWED = {
     r"\\alpha(?![_a-zA-Z])": {"02", "03"},  # named as the dissertation's own letter, once each
     r"\\alpha_\{?(?!c\b|s\b|p\b|i\b|\{?va)": set(),
     r"\\beta(?![_a-zA-Z])": {"02", "04"},  # wave number of a mode; in chapter 2 the dissertation's own letter
-    r"\\zeta(?![_a-zA-Z])": {"04", "05", "06"},  # damping over stiffness of the bearing
+    r"\\zeta(?![_a-zA-Z])": {"04", "05", "06", "08"},  # damping over stiffness of the bearing
     r"\\psi(?!_L)": {
         "05",
         "07",

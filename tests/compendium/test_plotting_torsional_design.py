@@ -6,7 +6,6 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from compendium.datasets.torsional_design import SYMBOLS
 from compendium.plotting import torsional_design as draw
 from facegear.support import labelled
 
@@ -63,17 +62,6 @@ def test_openings_draw_floquet_and_hsu():
     drawn = lines(draw.openings(data))
     np.testing.assert_allclose([line.get_ydata() for line in drawn[::2]], data.growth_rate.values)
     np.testing.assert_allclose([line.get_ydata() for line in drawn[1::2]], data.hsu_growth.values)
-
-
-@pytest.mark.parametrize("what", ["width_change", "centre_change"])
-def test_chart_of_levers_writes_every_number_where_it_belongs(what):
-    data = arrays("levers")
-    written = {
-        (round(text.get_position()[1]), round(text.get_position()[0])): text.get_text()
-        for text in draw.levers(data, SYMBOLS, what).axes[0].texts
-    }
-    values = data[what].values
-    assert written == {(i, j): f"{values[i, j]:.2f}" for i, j in np.ndindex(*values.shape)}
 
 
 @pytest.mark.parametrize("name", ["712a", "713a", "712b", "713b"])

@@ -1,13 +1,11 @@
-"""Figures of the design study of chapter 7: arms, variants, Hsu's errors, levers, closing dampings."""
+"""Figures of the design study of chapter 7: arms, variants, Hsu's errors, closing dampings."""
 
 from __future__ import annotations
-
-from typing import Literal
 
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
-from matplotlib.colors import LinearSegmentedColormap, Normalize, TwoSlopeNorm
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from facegear.plotting.style import (
@@ -19,7 +17,6 @@ from facegear.plotting.style import (
     PURPLE,
     SKY,
     VERMILION,
-    WIDTH,
     panels,
     styled,
 )
@@ -27,7 +24,6 @@ from facegear.plotting.style import (
 _LOOKS = ((BLUE, "o"), (VERMILION, "s"), (GREEN, "^"), (ORANGE, "D"), (PURPLE, "v"), (SKY, "P"))
 # The lightest colours of the map are lost on white.
 _GROWTH = LinearSegmentedColormap.from_list("growth", mpl.colormaps["YlGnBu"](np.linspace(0.35, 1.0, 256)))
-_DIVERGING = mpl.colormaps["PuOr_r"]
 
 
 @styled
@@ -178,46 +174,6 @@ def openings(data: xr.Dataset) -> Figure:
         xlim=(float(data["depth"][0]), float(data["depth"][-1])),
     )
     ax.legend(loc="upper left")
-    return figure
-
-
-@styled
-def levers(
-    data: xr.Dataset, symbols: tuple[str, ...], what: Literal["width_change", "centre_change"]
-) -> Figure:
-    """Design chart: what a percent of each parameter does to the width or the place of each tongue.
-
-    Parameters
-    ----------
-    data : xarray.Dataset
-        From :func:`compendium.datasets.torsional_design.levers`.
-    symbols : tuple of str
-        Symbols of the parameters.
-    what : {"width_change", "centre_change"}
-        Variable shown.
-    """
-    values = data[what].values
-    names = [f"{a}: {b}" for a, b in zip(data["case_name"].values, data["label"].values, strict=True)]
-    figure = Figure(figsize=(WIDTH, 1.0 + 0.3 * len(names)), layout="constrained")
-    ax = figure.subplots()
-    # Beyond this a colour says no more than the number written on it.
-    limit = min(float(np.abs(values).max()), 1.5)
-    norm = TwoSlopeNorm(0.0, -limit, limit)
-    mesh = ax.imshow(values, cmap=_DIVERGING, norm=norm, aspect="auto")
-    for i, j in np.ndindex(*values.shape):
-        dark = abs(norm(values[i, j]) - 0.5) > 0.33
-        ax.text(
-            j, i, f"{values[i, j]:.2f}", ha="center", va="center", fontsize=9, color="white" if dark else INK
-        )
-    ax.set_xticks(range(len(symbols)), symbols)
-    ax.set_yticks(range(len(names)), names)
-    ax.xaxis.tick_top()
-    ax.tick_params(length=0)
-    ax.grid(visible=False)
-    for side in ax.spines.values():
-        side.set_visible(False)
-    labels = {"width_change": "width [% per %]", "centre_change": "middle speed [% per %]"}
-    figure.colorbar(mesh, ax=ax, label=labels[what], pad=0.02, extend="both", aspect=30)
     return figure
 
 
