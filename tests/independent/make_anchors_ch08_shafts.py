@@ -70,7 +70,7 @@ def speeds(model):
                 for name, found in (("exact", exact), ("reduced", reduced)):
                     value = float(found[mode - 1])
                     at = {"mode": mode, "length": length}
-                    yield {"variable": name, "at": at, "value": value, "atol": 1e-6 * value}
+                    yield {"variable": name, "at": at, "value": value, "atol": 1e-7 * value}
 
     return anchors
 
@@ -86,12 +86,12 @@ def convergence(stored):
                 "variable": "frequency",
                 "at": {"mode": mode, "modes": modes},
                 "value": value,
-                "atol": 1e-6,
+                "atol": 1e-7,
             }
     truth = growth_rate(n, gearbox(n, *both, G, RHO, (1, 12)), 508.0)
     for modes in (0, 1, 2):
         own = growth_rate(n, reduced_gearbox(n, *both, G, RHO, modes, 60), 508.0)
-        yield {"variable": "growth", "at": {"modes": modes}, "value": own - truth, "atol": 5e-3}
+        yield {"variable": "growth", "at": {"modes": modes}, "value": own - truth, "atol": 5e-4}
 
 
 def chart(model, cells):
@@ -106,10 +106,10 @@ def chart(model, cells):
                 "variable": "growth_rate",
                 "at": {"length": length, "speed_rpm": at},
                 "value": value,
-                "atol": 5e-3,
+                "atol": 1e-5,
             }
             value = math.log(spectral_radius(n, at)) * n.N2 * at / 60.0
-            yield {"variable": "massless", "at": {"speed_rpm": at}, "value": value, "atol": 1e-3}
+            yield {"variable": "massless", "at": {"speed_rpm": at}, "value": value, "atol": 1e-7}
 
     return anchors
 
@@ -122,9 +122,9 @@ def points(stored):
         n = numbers_of(model)
         constant = gearbox(n, *lengths_of(model, length), G, RHO, elements)
         value = growth_rate(n, constant, at)
-        yield {"variable": "heavy", "at": {"point": point}, "value": value, "atol": 0.02}
+        yield {"variable": "heavy", "at": {"point": point}, "value": value, "atol": 0.01}
         value = math.log(spectral_radius(n, at)) * n.N2 * at / 60.0
-        yield {"variable": "massless", "at": {"point": point}, "value": value, "atol": 1e-3}
+        yield {"variable": "massless", "at": {"point": point}, "value": value, "atol": 1e-7}
 
 
 def sizes(stored):
