@@ -56,6 +56,8 @@ LONGEST = (
     "07_torsional",
     "your_drive",
     "08_torsional",
+    "08_shafts",
+    "08_damage",
 )
 IN_ORDER = [
     *(path for stem in LONGEST for path in NOTEBOOKS if path.stem == stem),

@@ -30,6 +30,7 @@ from facegear.drives.flexible_teeth import FlexibleTeeth
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
 from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
 from facegear.mechanics.torsional import Gearbox, Torsional, mesh_stiffness
@@ -66,8 +67,8 @@ class DriveFile:
         Power [W], pinion speed [rad/s], safety factor, operating speeds of the face gear [rad/s].
     contacts : mapping of str to Contact
         Those that the teeth can have, by the names that a report gives them, that of `transverse` first.
-    torsional : Torsional or None
-        Shafts and inertias, if the file has a gearbox.
+    torsional : Torsional, HeavyShafts or None
+        Shafts and inertias, if the file has a gearbox; shafts have mass where it gives their lengths.
     teeth : FlexibleTeeth or None
         None for rigid ones.
     roles : tuple of str or None
@@ -78,7 +79,7 @@ class DriveFile:
     transverse: FaceGears
     requirements: Requirements
     contacts: Mapping[str, Contact]
-    torsional: Torsional | None = None
+    torsional: Torsional | HeavyShafts | None = None
     teeth: FlexibleTeeth | None = None
     roles: tuple[Role, ...] | None = None
 
@@ -86,6 +87,11 @@ class DriveFile:
     def drive(self) -> Drive:
         """Teeth."""
         return self.transverse.gear.body.drive
+
+    @property
+    def not_buildable(self) -> tuple[str, ...]:
+        """What of the shafts cannot be built, one sentence each; empty without lengths of shafts."""
+        return getattr(self.torsional, "not_buildable", ())
 
 
 def read_drive_file(path: str | Path) -> DriveFile:
@@ -349,7 +355,7 @@ def _built(found: _Found) -> DriveFile:
     torsional = None
     if (gearbox := values["gearbox"]) is not None:
         torsional = _by_model(
-            found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive))
+            found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive), material)
         )
     return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles)
 
@@ -435,13 +441,17 @@ def _contacts(
     return {NAMES[name]: possible[name] for name in sorted(possible, key=lambda name: name != asked)}
 
 
-def _torsional(drive: Drive, gearbox: dict[str, Any], contact: Contact) -> Torsional:
+def _torsional(
+    drive: Drive, gearbox: dict[str, Any], contact: Contact, material: Material
+) -> Torsional | HeavyShafts:
     values = dict(gearbox)
     arm = values.pop("arm")
+    lengths = {name: values.pop(name) for name in ("input_length", "output_length")}
     for part in ("mesh", "input", "output"):
         # The file gives damping as a time.
         values[f"{part}_damping"] *= values[f"{part}_stiffness"]
-    return Torsional(Gearbox(drive, **values), contact, arm)
+    massless = Torsional(Gearbox(drive, **values), contact, arm)
+    return HeavyShafts(massless, **lengths, material=material) if any(lengths.values()) else massless
 
 
 def _check_bore(drive: Drive, bore_radius: float) -> None:

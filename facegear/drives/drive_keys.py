@@ -296,6 +296,11 @@ def _inertia(name: str, meaning: str) -> Key:
     return Key(name, meaning, "number", "kg m²", 1e-9, 1e9)
 
 
+def _length_of_shaft(name: str, meaning: str) -> Key:
+    meaning = f"{meaning}, of the material of the body; 0 for a massless one"
+    return Key(name, meaning, "number", "mm", 0.1, 2e4, or_zero=True, default=0.0)
+
+
 def _shaft(name: str, meaning: str) -> Key:
     return Key(name, meaning, "number", "N m/rad", 1e-3, 1e12)
 
@@ -312,6 +317,8 @@ _GEARBOX = Section(
         _time("input_damping_us", "$c_1/k_1$, its damping over its stiffness"),
         _shaft("output_stiffness_Nm_per_rad", "$k_2$, stiffness of the output shaft"),
         _time("output_damping_us", "$c_2/k_2$, its damping over its stiffness"),
+        _length_of_shaft("input_length_mm", "$l_1$, length of the input shaft"),
+        _length_of_shaft("output_length_mm", "$l_2$, length of the output shaft"),
         Key(
             "arm",
             "moment arm of the mesh force: as printed (7-3), or the constant one of conjugate teeth",

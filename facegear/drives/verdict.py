@@ -184,6 +184,7 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     if torsional is not None:
         spoken = _speeds(torsional, file.requirements.speeds)
         findings.append(f"Torsion: {spoken}{_resonances(torsional)}.")
+    findings += [f"Cannot be built as a solid shaft: {sentence}." for sentence in file.not_buildable]
     findings.append(f"Strength: {strength}.")
     return Verdict(headline, tuple(findings), _left_out(file))
 

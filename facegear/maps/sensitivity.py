@@ -256,6 +256,29 @@ def _split(family: _VariedFamily, method: Method | None) -> tuple[FloatArray, Fl
     return both[0, :half, :half], both[:, half:, :half]
 
 
+def transition_derivatives(
+    model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Transition matrix and its derivatives by parameters, in the scaled state of a family.
+
+    Parameters
+    ----------
+    model, speed, parameters, method
+        As for :func:`sensitivity`, errors too.
+
+    Returns
+    -------
+    transition : array, shape (2n, 2n)
+        S Φ S⁻¹.
+    derivatives : array, shape (P, 2n, 2n)
+        S dΦ/dp S⁻¹.
+    """
+    integer_at_least("number of parameters", len(parameters), 1)
+    family, values = _varied(model, speed, parameters)
+    matrix, scaled = _split(family, method)
+    return matrix, scaled / values[:, None, None]
+
+
 @dataclass(frozen=True, eq=False)
 class Sensitivity:
     """Critical multiplier and growth rate of a model at a speed, with their derivatives by P parameters.

@@ -511,6 +511,31 @@ def test_a_mistake_ends_in_one_sentence_that_names_key_value_and_what_is_valid(o
     assert re.search(message, refusal(CASE_1.replace(old, new)))
 
 
+class TestShaftsWithMass:
+    LENGTHS = "  input_length_mm: 300\n  output_length_mm: 250\n"
+
+    def test_lengths_give_shafts_their_mass(self):
+        found, massless = parse_drive(GEARBOX + self.LENGTHS), parse_drive(GEARBOX)
+        assert (found.torsional.input_length, found.torsional.output_length) == pytest.approx((0.3, 0.25))
+        assert found.torsional.torsional == massless.torsional
+        assert found.torsional.material == found.transverse.body.material
+        # The report reads stiffnesses off either.
+        assert found.torsional.gearbox == massless.torsional.gearbox
+        assert found.not_buildable == massless.not_buildable == ()
+
+    def test_one_shaft_may_be_massless(self):
+        found = parse_drive(GEARBOX + "  output_length_mm: 250\n").torsional
+        assert found.system(60.0).size == 5
+
+    def test_what_cannot_be_built_is_said(self):
+        (sentence,) = parse_drive(GEARBOX + self.LENGTHS.replace("300", "500")).not_buildable
+        assert sentence.startswith("input shaft of 98.4 mm diameter is thicker than the root circle")
+
+    def test_lengths_out_of_range_are_refused(self):
+        told = refusal(GEARBOX + self.LENGTHS.replace("300", "0.01"))
+        assert "gearbox.input_length_mm must lie in [0.1, 20000] in mm, got 0.01 mm" in told
+
+
 def test_mistakes_in_the_gearbox():
     told = refusal(
         GEARBOX.replace("mesh_stiffness_N_per_m: 157629095.3", "mesh_stiffness_N_per_m: 157629.0953")

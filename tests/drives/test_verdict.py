@@ -18,6 +18,7 @@ from facegear.floquet.modes import mean_growth_rate
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.support.parameters import rad_per_s
 
@@ -148,6 +149,15 @@ class TestWords:
         assert both.endswith("In torsion it is unstable at some speeds.")
         assert "In torsion it is stable" in self.said(stable, torsional=()).headline
         assert "torsion (the file has no section gearbox)" in self.said(stable).left_out
+
+    def test_shafts_that_cannot_be_built_are_among_the_findings(self):
+        box = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
+        file = replace(box, torsional=HeavyShafts(box.torsional, 0.5, 0.5))
+        found = verdict.verdict(file, [case("Tregold", "follower")], ()).findings
+        (sentence,) = [finding for finding in found if "built" in finding]
+        assert sentence.startswith(
+            "Cannot be built as a solid shaft: input shaft of 98.4 mm diameter is thicker"
+        )
 
     def test_speeds_in_rpm_with_four_digits(self):
         many = tuple((10.0 + 10 * i, 11.0 + 10 * i + 0.1 * i, 1.0) for i in range(5))

@@ -1,0 +1,192 @@
+"""Gearbox whose shafts have mass (section 8.2).
+
+The input shaft runs from the input, which turns at a constant speed, to the pinion, the output shaft from the face gear
+to the load. Chapter 7 has them as springs and dampers; here both are uniform rods (:mod:`facegear.mechanics.rods`) of
+the same stiffness and damping, whose inertia follows from their length. Short shafts become chapter 7's.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from facegear.floquet.models import Coordinate
+from facegear.floquet.modes import natural_exponents
+from facegear.floquet.periodic import PeriodicSystem, named
+from facegear.mechanics.exact_rods import exact_frequencies
+from facegear.mechanics.rods import (
+    MOST_MODES,
+    Rod,
+    Shaft,
+    shear_modulus,
+    with_mass,
+)
+from facegear.mechanics.torsional import InSi, Torsional, natural_speed
+from facegear.support.parameters import STEEL, Material, designed, integer_within, keep, within
+from facegear.support.types import FloatArray
+
+# Lengths of shafts with mass [m]: thin disks, and as long as an airframe.
+_SHORTEST, _LONGEST = 1e-4, 20.0
+
+
+@dataclass(frozen=True)
+class HeavyShafts:
+    """Torsional vibration of a gearbox with shafts that have mass.
+
+    Parameters
+    ----------
+    torsional : Torsional
+        The gearbox with massless shafts (chapter 7), whose stiffnesses and dampings the shafts keep.
+    input_length, output_length : float
+        l1, l2 of the shafts [m], from 0.0001 to 20, or 0 for a massless one.
+    modes : int
+        Number n of modes of each shaft with both ends held, from 0 to 50.
+    material : Material
+        Of the shafts.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind or outside its range.
+
+    Examples
+    --------
+    >>> from facegear.mechanics.gearboxes import FIGURES
+    >>> model = HeavyShafts(FIGURES["7.13a"].model(), input_length=0.3, output_length=0.3)
+    >>> model.system(speed=50.0).size
+    7
+    >>> print(*model.not_buildable, sep="; ")
+    input shaft of 158 mm diameter is thicker than the root circle of the pinion (90.5 mm): at most 32.1 mm long
+    """
+
+    torsional: Torsional
+    input_length: float = field(metadata=designed("length of the input shaft"))
+    output_length: float = field(metadata=designed("length of the output shaft"))
+    modes: int = 2
+    material: Material = STEEL
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.torsional, Torsional):
+            raise TypeError(f"torsional must be a Torsional, got {named(self.torsional)}")
+        if not isinstance(self.material, Material):
+            raise TypeError(f"material must be a Material, got {named(self.material)}")
+        for name in ("input_length", "output_length"):
+            keep(self, **{name: _checked_length(name, getattr(self, name))})
+        keep(self, modes=integer_within("modes", self.modes, 0, MOST_MODES))
+
+    @property
+    def gearbox(self) -> InSi:
+        """That of `torsional`."""
+        return self.torsional.gearbox
+
+    @property
+    def input_rod(self) -> Rod:
+        """Shaft from the input to the pinion, if it has mass."""
+        box = self.torsional.gearbox.in_si
+        return Rod(box.input_stiffness, self.input_length, box.input_damping, self.modes, self.material)
+
+    @property
+    def output_rod(self) -> Rod:
+        """Shaft from the face gear to the load, if it has mass."""
+        box = self.torsional.gearbox.in_si
+        return Rod(box.output_stiffness, self.output_length, box.output_damping, self.modes, self.material)
+
+    @property
+    def shafts(self) -> tuple[Shaft, ...]:
+        """Rods between the coordinates of chapter 7, of those shafts that have mass."""
+        first = (Shaft(self.input_rod, end=0),) if self.input_length else ()
+        return (*first, Shaft(self.output_rod, start=1, end=2)) if self.output_length else first
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Angles χ1, χ2, χo (7-9) and the modes y_j of the input shaft, then of the output shaft."""
+        lengths = {"input shaft": self.input_length, "output shaft": self.output_length}
+        modes = [
+            Coordinate(f"{shaft}, mode {number}", "rad", shaft)
+            for shaft, length in lengths.items()
+            if length
+            for number in range(1, self.modes + 1)
+        ]
+        return (*self.torsional.coordinates, *modes)
+
+    def natural_frequencies(self) -> FloatArray:
+        """Natural frequencies of the mean system at rest, undamped, ascending, one a coordinate [rad/s]."""
+        # Neither mass nor constant stiffness depends on speed.
+        system = self.system(1.0)
+        stiffness = system.stiffness.copy()
+        stiffness[:3, :3] = self.torsional.mean_stiffness
+        exponents = natural_exponents(system.mass, np.zeros_like(stiffness), stiffness)
+        return np.sort(exponents.imag)[len(stiffness) :]
+
+    def natural_speeds(self) -> FloatArray:
+        """Speeds of the face gear at which the mesh frequency is a natural one (7-20), one a coordinate [rad/s]."""
+        return natural_speed(self.torsional.drive, self.natural_frequencies())
+
+    def exact_frequencies(self, count: int) -> FloatArray:
+        """As :meth:`natural_frequencies`, the lowest `count` of them, with rods that are not reduced to modes."""
+        mass = self.torsional.gearbox.in_si.mass_matrix
+        return exact_frequencies(mass, self.torsional.mean_stiffness, self.shafts, count)
+
+    @property
+    def largest_diameters(self) -> tuple[float, float]:
+        """Diameters [m] that leave room for teeth: root circle of the pinion, inner edge of the face gear's teeth."""
+        drive = self.torsional.drive
+        return 2.0 * drive.dedendum_radius, 2.0 * drive.inner_radius
+
+    @property
+    def largest_lengths(self) -> tuple[float, float]:
+        """Lengths π G d⁴/(32 k) [m] from which on solid shafts of these stiffnesses are thicker than that."""
+        scale, box = math.pi * shear_modulus(self.material) / 32.0, self.torsional.gearbox.in_si
+        first, second = self.largest_diameters
+        return scale * first**4 / box.input_stiffness, scale * second**4 / box.output_stiffness
+
+    @property
+    def not_buildable(self) -> tuple[str, ...]:
+        """What cannot be built, and why, one sentence a shaft; empty if all can."""
+        edges = ("the root circle of the pinion", "the inner edge of the teeth of the face gear")
+        rows = zip(
+            ("input shaft", "output shaft"),
+            (self.input_length, self.output_length),
+            self.largest_lengths,
+            self.largest_diameters,
+            edges,
+            strict=True,
+        )
+        # Of one stiffness, the fourth power of the diameter grows as the length.
+        return tuple(
+            f"{name} of {1e3 * room * (length / longest) ** 0.25:.3g} mm diameter is thicker than {edge} "
+            f"({1e3 * room:.3g} mm): at most {1e3 * longest:.3g} mm long"
+            for name, length, longest, room, edge in rows
+            if length > longest
+        )
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed.
+
+        Parameters
+        ----------
+        speed : float
+            Ω2 of the face gear [rad/s], greater than 0.
+
+        Returns
+        -------
+        PeriodicSystem
+            Three coordinates of chapter 7 and n of each shaft; loads and period of chapter 7.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If `speed` is not a finite number greater than 0.
+        """
+        return with_mass(self.torsional.system(speed), self.shafts)
+
+
+def _checked_length(name: str, value: object) -> float:
+    length = within(name, value, 0.0, _LONGEST, "m")
+    if 0.0 < length < _SHORTEST:
+        raise ValueError(
+            f"{name} must be 0 for a massless shaft, or at least {_SHORTEST:g} m, got {length!r} m"
+        )
+    return length
