@@ -406,6 +406,27 @@ class _Columns:
             return LOWEST_DEGREE
         return degree_between(first / speed, last / speed, SHEET_TOLERANCE)
 
+    def are_smooth(self, slowest: float) -> bool:
+        """Whether matrices may be interpolated along the parameter, or are so cheap that they need not.
+
+        That is seen at the lowest speed, whose long period asks most of a series.
+        """
+        if self.loads is not None:
+            return True
+        column = self.at(slowest)
+        return with_method(
+            self.sweep.method,
+            lambda chosen: (
+                samples(
+                    column.matrices(chosen, column.scale),
+                    column.variable,
+                    column.smooth,
+                    self.degree(slowest),
+                ).size
+                > 0
+            ),
+        )
+
     @cached_property
     def _turning(self) -> tuple[ComplexArray, ComplexArray]:
         """Exponents over slowness of the first and of the last value, slow ones first."""
@@ -590,7 +611,10 @@ _Run = Callable[[Sequence[Task], str, Workers], Iterator[tuple[int, FloatArray]]
 
 
 def _columns(sweep: _Sweep, speeds: FloatArray) -> _Columns | None:
-    """Gather what the columns of a map have in common; nothing where it is no smooth function of its parameter."""
+    """Gather what the columns of a map have in common; nothing where it is no smooth function of its parameter.
+
+    Or so rough a one, as along a logarithmic axis, that a series would take as many matrices as there are values.
+    """
     slowest, fastest = float(speeds[0]), float(speeds[-1])
     probed = [system_at(model, slowest) for model in sweep.probed]
     # Building a system may be most of the work of a row: all are built only if these do not tell.
@@ -604,7 +628,8 @@ def _columns(sweep: _Sweep, speeds: FloatArray) -> _Columns | None:
         return None
     motions = tuple(FrozenMotions.of(model, 1.0 / fastest, 1.0 / slowest) for model in sweep.probed)
     # A fresh copy: models that have been built need not travel to other processes.
-    return _Columns(replace(sweep), swept, motions, np.array([system.period for system in first]))
+    found = _Columns(replace(sweep), swept, motions, np.array([system.period for system in first]))
+    return found if found.are_smooth(slowest) else None
 
 
 def _by_row(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray]:

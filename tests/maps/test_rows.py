@@ -6,10 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from facegear.floquet.models import replace_parameter
+from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.radau import Radau
 from facegear.maps.rows import in_rows
 from facegear.maps.stability_map import stability_map
+from facegear.mechanics.gearboxes import FIGURES
+from facegear.mechanics.torsional import Torsional
+from facegear.support.parameters import rad_per_s
 
 SOFT, STIFF, DAMPING = 0.7, 1.3, 0.02
 
@@ -65,6 +71,21 @@ def test_many_speeds_take_few_systems(monkeypatch):
     monkeypatch.setattr(Uneven, "system", lambda self, speed: built.append(speed) or system(self, speed))
     chart = stability_map(Uneven(), np.linspace(0.9, 2.6, 300), "part", np.linspace(0.1, 0.9, 6), jobs=1)
     assert len(built) < 0.3 * chart.size
+
+
+def test_an_axis_too_rough_to_interpolate_along_goes_by_rows(monkeypatch):
+    """Stiffnesses over three decades: a series along them would take as many matrices as there are values."""
+    built, system = [], Torsional.system
+    figure = FIGURES["7.10b"]
+    speeds = rad_per_s(np.linspace(figure.lowest_rpm, 1000.0, 300))
+    values = np.geomspace(figure.lowest, figure.highest, 16)
+    monkeypatch.setattr(Torsional, "system", lambda self, speed: built.append(speed) or system(self, speed))
+    chart = stability_map(figure.model(), speeds, figure.parameter, values, method=Radau(), jobs=1)
+    assert len(built) < 0.6 * chart.size
+    for row, column in ((0, 0), (5, 150), (15, 299)):
+        model = replace_parameter(figure.model(), figure.parameter, float(values[row]))
+        alone = growth_rate(model.system(float(speeds[column])), Radau())
+        assert float(chart[row, column]) == pytest.approx(alone, abs=1e-6)
 
 
 def test_rows_of_few_speeds_are_grouped():
