@@ -82,7 +82,7 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
         Row("stiffness of the disk that bearings are measured by", reference_stiffness(body), "N/m"),
         Row("bearing stiffness", model.bearing_stiffness, "N/m"),
         Row("pinion mass", model.pinion_mass, "kg"),
-        Row("driving force of a pinion", force, "N"),
+        Row(f"driving force of a {'pinion' if file.roles is None else 'mesh'}", force, "N"),
         *(() if file.teeth is None else (Row("stiffness of a tooth pair", file.teeth.stiffness, "N/m"),)),
     )
 
