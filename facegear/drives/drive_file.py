@@ -29,6 +29,7 @@ from facegear.drives.drive_keys import (
 from facegear.drives.flexible_teeth import FlexibleTeeth
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
+from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
@@ -73,6 +74,8 @@ class DriveFile:
         None for rigid ones.
     roles : tuple of str or None
         What each pinion does between two gears; None where there is one gear.
+    play : Backlash or None
+        The gearbox with play of its teeth, under the torque of one pinion's power; None where there is no play.
     """
 
     name: str
@@ -82,6 +85,7 @@ class DriveFile:
     torsional: Torsional | HeavyShafts | None = None
     teeth: FlexibleTeeth | None = None
     roles: tuple[Role, ...] | None = None
+    play: Backlash | None = None
 
     @property
     def drive(self) -> Drive:
@@ -352,12 +356,14 @@ def _built(found: _Found) -> DriveFile:
         transverse = gear if roles is None else _by_model(found, "second_gear", lambda: TwoGears(gear, roles))
     _by_model(found, "material", lambda: _by_model(found, "body", lambda: transverse.gear.bearing_stiffness))
     requirements = _requirements(found, body)
-    torsional = None
+    torsional, play = None, None
     if (gearbox := values["gearbox"]) is not None:
         torsional = _by_model(
             found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive), material)
         )
-    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles)
+        torque = requirements.power / requirements.pinion_speed * drive.gear_ratio
+        play = _by_model(found, "gearbox", lambda: _play(gearbox, torsional, torque))
+    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles, play)
 
 
 def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[float]:
@@ -444,7 +450,7 @@ def _contacts(
 def _torsional(
     drive: Drive, gearbox: dict[str, Any], contact: Contact, material: Material
 ) -> Torsional | HeavyShafts:
-    values = dict(gearbox)
+    values = {name: value for name, value in gearbox.items() if name != "gap"}
     arm = values.pop("arm")
     lengths = {name: values.pop(name) for name in ("input_length", "output_length")}
     for part in ("mesh", "input", "output"):
@@ -452,6 +458,19 @@ def _torsional(
         values[f"{part}_damping"] *= values[f"{part}_stiffness"]
     massless = Torsional(Gearbox(drive, **values), contact, arm)
     return HeavyShafts(massless, **lengths, material=material) if any(lengths.values()) else massless
+
+
+def _play(gearbox: dict[str, Any], torsional: Any, torque: float) -> Backlash | None:
+    """Give the gearbox the play of its teeth, if there is any."""
+    if gearbox["gap"] == 0.0:
+        return None
+    if gearbox["input_length"] or gearbox["output_length"]:
+        raise ValueError("gap must be 0 beside lengths of shafts: play is computed with massless ones")
+    if gearbox["gap"] > (module := torsional.drive.module):
+        raise ValueError(
+            f"gap must be at most the module, {1e6 * module:.6g} µm, got {1e6 * gearbox['gap']:.6g} µm"
+        )
+    return Backlash(torsional, torque, gearbox["gap"])
 
 
 def _check_bore(drive: Drive, bore_radius: float) -> None:

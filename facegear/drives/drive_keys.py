@@ -30,6 +30,7 @@ MOST_PINIONS = 12
 PER_SI: Mapping[str, float] = MappingProxyType(
     {
         "mm": 1e3,
+        "µm": 1e6,
         "°": 180 / math.pi,
         "µs": 1e6,
         "rpm": 30 / math.pi,
@@ -41,7 +42,7 @@ PER_SI: Mapping[str, float] = MappingProxyType(
 )
 # Value in SI is this divided by the value in the file.
 OVER_SI: Mapping[str, float] = MappingProxyType({"1/in": 25.4e-3})
-_UNIT_IN_NAME = re.compile(r"_(mm|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
+_UNIT_IN_NAME = re.compile(r"_(mm|um|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
 
 
 @dataclass(frozen=True)
@@ -319,6 +320,17 @@ _GEARBOX = Section(
         _time("output_damping_us", "$c_2/k_2$, its damping over its stiffness"),
         _length_of_shaft("input_length_mm", "$l_1$, length of the input shaft"),
         _length_of_shaft("output_length_mm", "$l_2$, length of the output shaft"),
+        Key(
+            "backlash_um",
+            "play of the teeth along the line of action, for what becomes of tongues in torsion; 0 for none",
+            "number",
+            "µm",
+            0.1,
+            1e5,
+            or_zero=True,
+            default=0.0,
+            quantity="gap",
+        ),
         Key(
             "arm",
             "moment arm of the mesh force: as printed (7-3), or the constant one of conjugate teeth",

@@ -248,7 +248,10 @@ def _left_out(file: DriveFile) -> str:
         missing += ["the inertia of the moving contact (total rate)"]
     elif file.teeth.sharing == CENTROID:
         missing += ["the load of each tooth pair by itself"]
-    missing += ["tooth errors and backlash", "the stiffness of the housing"]
+    missing += [
+        "tooth errors and backlash" if file.play is None else "tooth errors",
+        "the stiffness of the housing",
+    ]
     return (
         f"Not included: {', '.join(missing)}. The driving force is the same at all speeds; all parameters are taken as "
         "exact; speeds outside the range are not looked at."

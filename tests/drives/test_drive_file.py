@@ -220,6 +220,31 @@ class TestFlexibleTeeth:
             parse_drive(self.with_gearbox("40"))
 
 
+class TestPlay:
+    def test_teeth_have_play_under_the_torque_of_a_pinion(self):
+        found = parse_drive(GEARBOX.replace("gearbox:\n", "gearbox:\n  backlash_um: 80\n"))
+        duty = found.requirements
+        assert parse_drive(GEARBOX).play is None
+        assert found.play.torsional == found.torsional == parse_drive(GEARBOX).torsional
+        assert found.play.gap == pytest.approx(8e-5, rel=1e-15)
+        assert found.play.torque == pytest.approx(duty.power / duty.pinion_speed * 107 / 31, rel=1e-12)
+
+    @pytest.mark.parametrize(
+        ("keys", "told"),
+        [
+            ("backlash_um: -3", "gearbox.backlash_um must lie in .*got -3"),
+            ("backlash_um: 1e5", "gearbox.backlash_um must be at most the module, 3175 µm, got 100000 µm"),
+            (
+                "backlash_um: 80\n  input_length_mm: 200",
+                "gearbox.backlash_um must be 0 beside lengths of shafts",
+            ),
+        ],
+    )
+    def test_what_does_not_go_together_is_refused(self, keys, told):
+        with pytest.raises(DriveFileError, match=told):
+            parse_drive(GEARBOX.replace("gearbox:\n", f"gearbox:\n  {keys}\n"))
+
+
 class TestTwoGears:
     TEXT = (DRIVES / "two_gears.yaml").read_text(encoding="utf-8")
 
