@@ -4,6 +4,7 @@ Takes some minutes. Motions are those of :mod:`tests.independent.impacts`: DOP85
 formulas of the text, repeated by Newton's method with differences of whole periods. The package tells where to begin.
 """
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,8 +12,9 @@ import numpy as np
 import yaml
 
 import facegear as fg
-from compendium.datasets.backlash import families
+from compendium.datasets.backlash import families, torque_response
 from facegear.floquet.continuation import orbits_at
+from facegear.floquet.orbits import periodic_orbit
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.support.labelled import load
@@ -33,9 +35,9 @@ CELLS = (
 )
 
 
-def shot(speed, start, periods):
+def shot(speed, start, periods, model=PLAY):
     """State at the beginning of the motion that repeats itself, from one nearby."""
-    drive, state = as_drive(PLAY, speed), np.array(start)
+    drive, state = as_drive(model, speed), np.array(start)
     for _ in range(3):
         end = drive.flown(state, periods)[0]
         steps = 1e-6 * np.maximum(np.abs(state), 1e-6)
@@ -74,6 +76,38 @@ def response(stored):
             }
 
 
+def at_250(branches):
+    """Every motion there at 250 rpm."""
+    speed = float(fg.rad_per_s(250.0))
+    return [o for b in branches.values() for o in orbits_at(PLAY.system, b, speed) if o is not None]
+
+
+def motions(stored):
+    """Deformation and its rate as the period begins."""
+    there = [orbit for orbit in at_250(families(PLAY, 150.0, 800.0, 250.0)) if orbit.is_stable]
+    for number, entering in enumerate(stored.deformation.values[:, 0]):
+        near = min(there, key=lambda orbit: abs(deformation(orbit.start) - entering))
+        state = shot(float(fg.rad_per_s(250.0)), near.start, near.periods)
+        at = {"motion": number, "fraction": 0.0}
+        yield {"variable": "deformation", "at": at, "value": float(deformation(state)), "atol": 1e-11}
+        yield {"variable": "rate", "at": at, "value": float(deformation(state[3:])), "atol": 1e-7}
+
+
+def torque(stored):
+    """Deformation as the period begins, at some torques of both sheets."""
+    speed = float(fg.rad_per_s(250.0))
+    branch, _ = torque_response(PLAY, 250.0, stored.torque.values, 6e-4)
+    for sheet, part in enumerate(branch.sheets):
+        for column in (25, 50):
+            value = float(stored.torque.values[column])
+            model = replace(PLAY, torque=value)
+            near = part.orbits[int(np.abs(part.parameters - value).argmin())]
+            found = periodic_orbit(model.system(speed), 1, near)
+            state = shot(speed, found.start, 1, model)
+            at = {"sheet": sheet, "torque": value}
+            yield {"variable": "entering", "at": at, "value": float(deformation(state)), "atol": 1e-11}
+
+
 def growth(back_flank, speeds_rpm):
     """Growth a mesh period of one motion without gap and torque, between its 30th and its 60th period."""
     free = replace(PLAY, back_flank=back_flank)
@@ -92,12 +126,15 @@ def growth(back_flank, speeds_rpm):
 
 
 def main() -> None:
-    """Write the anchors."""
+    """Write the anchors of the files named on the command line, of all when none is."""
     jobs = {
         "ch08_torsion_response": response,
+        "ch08_torsion_motions": motions,
+        "ch08_torsion_torque": torque,
         "ch08_torsion_large": lambda stored: growth("reversed", (320.0, 640.0)),
     }
-    for name, compute in jobs.items():
+    for name in sys.argv[1:] or jobs:
+        compute = jobs[name]
         content = {
             "figure": name,
             "route": ROUTE,

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.continuation import Branch, Following, doubled, followed, orbits_at
 from facegear.floquet.orbits import Orbit, periodic_orbit
 from facegear.floquet.transients import settled
 from facegear.mechanics.backlash import Backlash
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s, rpm
+from facegear.support.types import FloatArray
 
 # How near a speed may be to where motions meet [rpm].
 _CLEAR = 3.0
@@ -72,9 +75,92 @@ def response(
     shown = np.asarray(speeds_rpm, dtype=float)
     meet = np.array([speed for *_, speed in special(branches)])
     clear = np.abs(shown[:, np.newaxis] - meet).min(axis=1, initial=np.inf) > _CLEAR
+
+    def at(branch: Branch, speed_rpm: float) -> tuple[Orbit | None, ...]:
+        return orbits_at(model.system, branch, float(rad_per_s(speed_rpm)))
+
+    return _response(model, branches, at, ("speed", shown, clear), largest)
+
+
+def torque_response(
+    model: Backlash, speed_rpm: float, torques: ArrayLike, largest: float
+) -> tuple[Branch, xr.Dataset]:
+    """Follow the pressed motion from the largest torque down, and give its statistics as :func:`response` does.
+
+    None are given within three percent of a fold or flip.
+
+    Parameters
+    ----------
+    model : Backlash
+    speed_rpm : float
+    torques : array_like
+        Ascending [N m].
+    largest : float
+        Deformation above which motions are left out [m].
+    """
+    shown, speed = np.asarray(torques, dtype=float), float(rad_per_s(speed_rpm))
+
+    def under(torque: float) -> ClearanceSystem:
+        return replace(model, torque=torque).system(speed)
+
+    low, high = float(shown[0]), float(shown[-1])
+    branch = followed(under, high, periodic_orbit(under(high)), low, high, direction=-1.0)
+    meet = np.array([point.parameter for point in branch.special])
+    clear = np.abs(np.log(shown[:, np.newaxis] / meet)).min(axis=1, initial=np.inf) > 0.03
+
+    def at(branch: Branch, torque: float) -> tuple[Orbit | None, ...]:
+        return orbits_at(under, branch, torque)
+
+    return branch, _response(model, {"from above": branch}, at, ("torque", shown, clear), largest)
+
+
+def motions(model: Backlash, orbits: Sequence[Orbit], points: int) -> xr.Dataset:
+    """Mesh deformation and its rate over the periods of some motions, the smallest first.
+
+    Parameters
+    ----------
+    model : Backlash
+    orbits : sequence of Orbit
+    points : int
+        Instants over the whole of each motion.
+    """
+    fraction = np.linspace(0.0, 1.0, points)
+
+    def whole(orbit: Orbit) -> tuple[FloatArray, FloatArray]:
+        drive = model.torsional.drive
+        arms = drive.base_radius * np.array([1.0, -drive.gear_ratio, 0.0])
+        return orbit.displacements(fraction) @ arms, orbit.velocities(fraction) @ arms
+
+    ordered = sorted(orbits, key=lambda orbit: float(whole(orbit)[0].max()))
+    deformation, rate = np.moveaxis(np.array([whole(orbit) for orbit in ordered]), 1, 0)
+    contact = [statistics(model, orbit)[4] for orbit in ordered]
+    both = ("motion", "fraction")
+    return xr.Dataset(
+        {
+            "deformation": variable(both, deformation, "Mesh deformation", units="m", rtol=1e-6, atol=1e-11),
+            "rate": variable(both, rate, "Its rate", units="m/s", rtol=1e-6, atol=1e-7),
+            "contact": variable("motion", contact, "0 pressed, 1 parts, 2 strikes back", units="1", atol=0.1),
+        },
+        {
+            "motion": np.arange(len(ordered)),
+            "fraction": fraction,
+            "periods": ("motion", [orbit.periods for orbit in ordered]),
+        },
+    )
+
+
+def _response(
+    model: Backlash,
+    branches: Mapping[str, Branch],
+    at: Callable[[Branch, float], tuple[Orbit | None, ...]],
+    axis: tuple[str, FloatArray, FloatArray],
+    largest: float,
+) -> xr.Dataset:
+    """Statistics of every sheet of some families along an axis: its name, its values, and which are to be looked at."""
+    name, shown, clear = axis
     names, periods, rows = [], [], []
-    for name, branch in branches.items():
-        columns = [orbits_at(model.system, branch, float(rad_per_s(x))) for x in shown[clear]]
+    for family, branch in branches.items():
+        columns = [at(branch, x) for x in shown[clear].tolist()]
         for sheet in zip(*columns, strict=True):
             table = np.full((shown.size, 7), np.nan)
             for place, orbit in zip(np.flatnonzero(clear), sheet, strict=True):
@@ -83,27 +169,23 @@ def response(
                     if values[3] < largest:
                         table[place] = (*values, float(orbit.is_stable))
             if np.isfinite(table).any():
-                names.append(name)
+                names.append(family)
                 periods.append(branch.orbits[0].periods)
                 rows.append(table)
-    stacked = np.moveaxis(np.array(rows), -1, 0)
+    stacked, both = np.moveaxis(np.array(rows), -1, 0), ("sheet", name)
     words = ("mean", "rms", "lowest", "highest")
     sizes = {
-        word: variable(
-            ("sheet", "speed"), part, f"Mesh deformation, {word}", units="m", rtol=1e-6, atol=1e-12
-        )
+        word: variable(both, part, f"Mesh deformation, {word}", units="m", rtol=1e-6, atol=1e-12)
         for word, part in zip(words, stacked[:4], strict=True)
     }
-    contact = variable(
-        ("sheet", "speed"), stacked[4], "0 pressed, 1 parts, 2 strikes back", units="1", atol=0.1
-    )
+    contact = variable(both, stacked[4], "0 pressed, 1 parts, 2 strikes back", units="1", atol=0.1)
     sizes["entering"] = variable(
-        ("sheet", "speed"), stacked[5], "Mesh deformation as a pair enters", units="m", rtol=1e-6, atol=1e-12
+        both, stacked[5], "Mesh deformation as a pair enters", units="m", rtol=1e-6, atol=1e-12
     )
-    stable = variable(("sheet", "speed"), stacked[6], "1 where stable", units="1", atol=0.1)
+    stable = variable(both, stacked[6], "1 where stable", units="1", atol=0.1)
     coordinates = {
         "sheet": np.arange(len(names)),
-        "speed": shown,
+        name: shown,
         "family": text("sheet", names, "Family"),
         "periods": ("sheet", periods),
     }
