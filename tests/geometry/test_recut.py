@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from facegear import Drive
-from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import SHAPER_OVERHANG
 from facegear.geometry.kinematics import ContactPath
+from facegear.mechanics.contact import Contact
 from tests.independent.shaper_envelope import shaper_of
 
 
@@ -206,9 +206,9 @@ def test_a_part_of_the_shaper_that_cuts_few_lines_is_seen(teeth, degrees):
     (corner,) = drive.contact_region._cut_corners
     assert any(abs(corner - kink) < 1e-12 for kink in drive.contact_region.kinks)
     # A missed corner is a kink inside a piece, which no series follows.
-    path = ContactPath(drive, drive.contact_ratio)
-    fitted = PiecewiseChebyshev.fit(
-        lambda x, piece: path.centroid_on_piece(x, piece).radius, path.breakpoints
-    )
+    [place] = Contact().places(drive)
+    fitted = place.shape(lambda radius, angle: np.stack([radius, angle], axis=-1))
     x = np.linspace(0.0, 1.0, 2001)[:-1]
-    np.testing.assert_allclose(fitted(x)[:, 0], path.centroid(x).radius, rtol=1e-10)
+    centroid = ContactPath(drive, drive.contact_ratio).centroid(x)
+    expected = np.stack([centroid.radius / drive.outer_radius, centroid.angle], axis=-1)
+    np.testing.assert_allclose(fitted(x), expected, rtol=1e-9, atol=1e-12)
