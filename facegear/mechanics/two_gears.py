@@ -2,10 +2,10 @@
 
 Both gears mesh with every pinion, from below and from above. Turned by half a turn about the axis of a pinion, the mesh
 below is the mesh above: the upper gear turns the other way, its contact runs along the mirrored path at the same
-instants, and half a turn is N1/2 teeth of the pinion. Both gears are on one axis, square to those of the pinions, or the
-upper gear would be one of another shaft angle. A pinion stands between the gears only where its teeth fit into
-both: from one pinion to another the lower gear turns its mesh by θ/θ_N periods and the upper one by −θ/θ_N, so that
-angles differ by whole halves of the angular pitch θ_N.
+instants, and half a turn is N1/2 teeth of the pinion. Both gears are on one axis, square to those of the pinions: at
+another shaft angle the upper gear would be one of another kind. A pinion stands between the gears only where its teeth
+fit into both: from one pinion to another the lower gear turns its mesh by θ/θ_N periods and the upper one by −θ/θ_N, so
+that angles differ by whole halves of the angular pitch θ_N.
 
 A pinion that drives both gears is an *input*. An *idler* takes torque from the upper gear and gives it to the lower: on
 the upper gear it presses with the other flanks of its teeth, whose contact is mirrored and runs backwards
