@@ -181,7 +181,8 @@ class Survey:
         Parameters
         ----------
         measured : array_like of complex, shape (m,)
-            Λ [1/s], any image; the real part counts for nothing where it has no finite deviation.
+            Λ [1/s] in the order of the motions, any image; the real part counts for nothing where it has no finite
+            deviation. Frequencies alone do not tell that two of them were exchanged, where other losses explain them.
         start : array_like, shape (P,), optional
             Losses to begin with, for the fit next to them, where they are about known: whether others fit as well is
             then not asked. Default: many starts all over the range.
