@@ -1,29 +1,40 @@
 """What measured frequencies and decay rates say of the losses of a model's parameters.
 
 A loss d makes a parameter p (1 − d). Characteristic exponents Λ(d) of some motions are measured with independent
-normal errors of known deviations; the losses that fit best are least squares over the deviations. No unbiased estimate
+normal errors of known deviations; the losses that fit best are least squares over the deviations. A frequency is known
+but for multiples of that of the mesh, so that far from the intact model other losses may fit as well: fits are sought
+from many starts, and those that do not explain the data, or are not the only ones, are refused. No unbiased estimate
 scatters less than the Cramér–Rao bound (GᵀG)⁻¹, G the derivatives of what is measured over the deviations, and least
 squares attain it where errors are small (Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import least_squares
 from scipy.stats import chi2
 
+from facegear.design.fits import Fit, local_fits, spread_starts
 from facegear.floquet.models import Model, replace_parameter, require_model, value_of
 from facegear.maps.exponents import ExponentSensitivity, exponent_sensitivity
-from facegear.support.parameters import finite_array, integer_at_least, integer_within, keep, positive
+from facegear.support.parameters import (
+    finite,
+    finite_array,
+    integer_at_least,
+    integer_within,
+    keep,
+    positive,
+)
 from facegear.support.types import ComplexArray, FloatArray
 
-# Losses between which a fit looks: nothing is left of a part, or it is twice as stiff.
-_LEAST, _MOST = -1.0, 0.95
+# Starts of a fit, evenly spread over the losses that are looked at.
+_STARTS = 16
+# Part of all measurements whose errors alone exceed the largest misfit that is taken for a fit.
+_EXCEEDED = 1e-4
 # Condition of G from which on some mix of losses is not told at all.
 _UNTOLD = 1e8
 
@@ -64,7 +75,11 @@ class Survey:
     def __post_init__(self) -> None:
         require_model(self.model)
         keep(self, speed=positive("speed", self.speed, "rad/s"))
-        keep(self, parameters=tuple(self.parameters), motions=tuple(self.motions))
+        for name, kind in (("parameters", "names"), ("motions", "numbers")):
+            listed = getattr(self, name)
+            if isinstance(listed, str) or not isinstance(listed, Iterable):
+                raise TypeError(f"{name} must be a list of {kind}, got {listed!r}")
+            keep(self, **{name: tuple(listed)})
         integer_at_least("number of parameters", len(self.parameters), 1)
         integer_at_least("number of motions", len(self.motions), 1)
         count = len(self.intact.oscillating)
@@ -72,18 +87,7 @@ class Survey:
             integer_within(f"motions[{number}]", motion, 0, count - 1)
         if len(set(self.motions)) < len(self.motions):
             raise ValueError(f"motions must differ, got {self.motions}")
-        deviations = np.array(self.deviations, dtype=float)
-        if deviations.shape != (len(self.motions), 2):
-            raise ValueError(
-                f"deviations must have shape ({len(self.motions)}, 2), of decay rate and frequency of each motion; got "
-                f"shape {deviations.shape}"
-            )
-        if np.isnan(deviations).any() or (deviations <= 0.0).any() or np.isinf(deviations).all():
-            raise ValueError(
-                "deviations must be greater than 0, infinite where nothing is measured, not all of them; got "
-                f"{deviations.tolist()}"
-            )
-        keep(self, deviations=deviations)
+        keep(self, deviations=_checked_deviations(self.deviations, len(self.motions)))
 
     @cached_property
     def intact(self) -> ExponentSensitivity:
@@ -106,11 +110,11 @@ class Survey:
             model = replace_parameter(model, name, value * (1.0 - loss))
         return model
 
-    def _losses(self, losses: ArrayLike) -> FloatArray:
-        array = finite_array("losses", losses)
+    def _losses(self, losses: ArrayLike, name: str = "losses") -> FloatArray:
+        array = finite_array(name, losses)
         if array.shape != self._values.shape or (array >= 1.0).any():
             raise ValueError(
-                f"losses must be {self._values.size} numbers below 1, one a parameter; got {array.tolist()}"
+                f"{name} must be {self._values.size} numbers below 1, one a parameter; got {array.tolist()}"
             )
         return array
 
@@ -169,56 +173,73 @@ class Survey:
         rows = np.linalg.svd(self.jacobian(losses), full_matrices=True)[2]
         return np.asarray(rows[-1] * np.sign(rows[-1][np.abs(rows[-1]).argmax()]), dtype=float)
 
-    def identified(self, measured: ArrayLike, start: ArrayLike | None = None) -> FloatArray:
+    def identified(
+        self, measured: ArrayLike, start: ArrayLike | None = None, least: float = 0.0, most: float = 0.5
+    ) -> FloatArray:
         """Losses that fit measured exponents best, by least squares with their analytic derivatives.
 
         Parameters
         ----------
         measured : array_like of complex, shape (m,)
-            Λ [1/s], any image; the real part counts for nothing where it has no finite deviation.
+            Λ [1/s] in the order of the motions, any image; the real part counts for nothing where it has no finite
+            deviation. Frequencies alone do not tell that two of them were exchanged, where other losses explain them.
         start : array_like, shape (P,), optional
-            Losses to begin with; default none.
+            Losses to begin with, for the fit next to them, where they are about known: whether others fit as well is
+            then not asked. Default: many starts all over the range.
+        least, most : float
+            Range of losses that are looked for [-]. A part is not stiffer than it was, and has half of its stiffness
+            left, unless you say otherwise; `most` is below 1. In a wider range more losses fit.
 
         Returns
         -------
         array, shape (P,)
+            In the range. Where the true ones are on its edge, errors of the data move them inwards only.
 
         Raises
         ------
-        ValueError
-            If the shape is wrong, or what is measured does not tell all losses.
+        TypeError, ValueError
+            If an argument is of the wrong kind, or what is measured does not tell all losses.
         ArithmeticError
-            If no fit was found.
+            If no losses in the range were found that explain what is measured: χ² of the misfit over the deviations
+            is larger than errors alone make it once in ten thousand measurements. Or if several were found that do,
+            further apart than such errors would move them: a narrower range, more motions or another speed may exclude
+            all but one.
         """
-        values = np.asarray(measured, dtype=complex)
-        if values.shape != (len(self.motions),) or not np.isfinite(values).all():
-            raise ValueError(
-                f"measured must be {len(self.motions)} finite exponents, one a motion; got {values.tolist()}"
-            )
-        first = np.zeros(self._values.size) if start is None else self._losses(start)
-        self.bound(first)  # refuses what is not told
-        last: dict[bytes, tuple[FloatArray, FloatArray]] = {}
-
-        def both(losses: FloatArray) -> tuple[FloatArray, FloatArray]:
-            if losses.tobytes() not in last:
-                last.clear()
-                exponents, derivatives = self.expected(losses)
-                away = exponents - self._nearest(values, exponents)
-                last[losses.tobytes()] = self._over_deviations(away), self._over_deviations(derivatives)
-            return last[losses.tobytes()]
-
-        fit = least_squares(
-            lambda x: both(x)[0],
-            first,
-            lambda x: both(x)[1],
-            bounds=(_LEAST, _MOST),
-            xtol=1e-10,
-            ftol=1e-12,
-            gtol=1e-10,
+        values = _checked_exponents("measured", measured, len(self.motions))
+        least, most = _checked_range(least, most)
+        first = (
+            np.full(self._values.size, max(least, min(0.0, most)))
+            if start is None
+            else self._losses(start, "start")
         )
-        if not fit.success:
-            raise ArithmeticError(f"no losses were found that fit the measured exponents: {fit.message}")
-        return np.asarray(fit.x, dtype=float)
+        if (first < least).any() or (first > most).any():
+            raise ValueError(
+                f"start must lie between least={least:g} and most={most:g}, got {first.tolist()}"
+            )
+        self.bound(first)  # refuses what is not told
+
+        def residuals(losses: FloatArray) -> tuple[FloatArray, FloatArray]:
+            exponents, derivatives = self.expected(losses)
+            away = exponents - self._nearest(values, exponents)
+            return self._over_deviations(away), self._over_deviations(derivatives)
+
+        starts = spread_starts(least, most, first.size, _STARTS) if start is None else first[None]
+        fits = local_fits(residuals, starts, least, most)
+        allowed = float(chi2.isf(_EXCEEDED, np.isfinite(self.deviations).sum()))
+        if not fits or fits[0].misfit > allowed:
+            raise ArithmeticError(
+                f"no losses from {least:g} to {most:g} were found that explain measured {values.round(3).tolist()} "
+                f"within its deviations, χ² up to {allowed:.3g}{'; the best: ' + _told(fits[0]) if fits else ''}"
+            )
+        self.bound(fits[0].values)
+        for other in fits[1:]:
+            if other.misfit <= allowed and fits[0].differs(other, allowed):
+                raise ArithmeticError(
+                    f"measured {values.round(3).tolist()} is explained by losses {_told(fits[0])} and by "
+                    f"{_told(other)}: narrow the range by least and most, give a start next to the right ones, or "
+                    "measure more"
+                )
+        return fits[0].values
 
 
 def bound_together(surveys: Sequence[Survey], losses: ArrayLike) -> FloatArray:
@@ -260,6 +281,53 @@ def _condition(rows: FloatArray) -> float:
     return float(singular[0] / singular[-1]) if told else float("inf")
 
 
+def _told(fit: Fit) -> str:
+    return f"{fit.values.round(4).tolist()} (χ² = {fit.misfit:.3g})"
+
+
+def _checked_deviations(deviations: ArrayLike, motions: int) -> FloatArray:
+    """Return standard deviations of decay rate and frequency of each motion, shape (motions, 2)."""
+    try:
+        sizes = np.array(deviations, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(
+            f"deviations must be real numbers, shape ({motions}, 2), got {deviations!r}"
+        ) from None
+    if sizes.shape != (motions, 2):
+        raise ValueError(
+            f"deviations must have shape ({motions}, 2), of decay rate and frequency of each motion; got shape "
+            f"{sizes.shape}"
+        )
+    if np.isnan(sizes).any() or (sizes <= 0.0).any() or np.isinf(sizes).all():
+        raise ValueError(
+            "deviations must be greater than 0, infinite where nothing is measured, not all of them; got "
+            f"{sizes.tolist()}"
+        )
+    return sizes
+
+
+def _checked_exponents(name: str, exponents: ArrayLike, motions: int | None = None) -> ComplexArray:
+    """Return finite complex numbers, one a motion."""
+    wanted = (
+        "finite exponents, one a motion" if motions is None else f"{motions} finite exponents, one a motion"
+    )
+    try:
+        values = np.array(exponents, dtype=complex)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be {wanted}; got {exponents!r}") from None
+    if values.ndim != 1 or len(values) != (motions or len(values)) or not np.isfinite(values).all():
+        raise ValueError(f"{name} must be {wanted}; got {values.tolist()}")
+    return values
+
+
+def _checked_range(least: float, most: float) -> tuple[float, float]:
+    """Return the range of losses, ascending and below 1."""
+    least, most = finite("least", least), finite("most", most)
+    if not least < most < 1.0:
+        raise ValueError(f"most must be greater than least={least:g} and below 1, got {most!r}")
+    return least, most
+
+
 def drawn(exponents: ArrayLike, deviations: ArrayLike, count: int, seed: int) -> ComplexArray:
     """Draw measurements with independent normal errors, none where the deviation is infinite, shape (count, m).
 
@@ -268,33 +336,57 @@ def drawn(exponents: ArrayLike, deviations: ArrayLike, count: int, seed: int) ->
     exponents : array_like of complex, shape (m,)
     deviations : array_like, shape (m, 2)
         As for :class:`Survey`.
-    count, seed : int
+    count : int
+        1 or more.
+    seed : int
+        0 or greater.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument and what would be valid.
     """
-    sizes = np.asarray(deviations, dtype=float)
-    errors = np.random.default_rng(seed).normal(size=(integer_at_least("count", count, 1), len(sizes), 2))
+    values = _checked_exponents("exponents", exponents)
+    sizes = _checked_deviations(deviations, len(values))
+    rng = np.random.default_rng(integer_at_least("seed", seed, 0))
+    errors = rng.normal(size=(integer_at_least("count", count, 1), len(sizes), 2))
     errors *= np.where(np.isfinite(sizes), sizes, 0.0)
-    return np.asarray(np.asarray(exponents) + errors[..., 0] + 1j * errors[..., 1], dtype=complex)
+    return np.asarray(values + errors[..., 0] + 1j * errors[..., 1], dtype=complex)
 
 
-def scatter_over_bound(
-    losses: FloatArray, truth: FloatArray, bound: FloatArray
-) -> tuple[float, float, float]:
+def scatter_over_bound(losses: ArrayLike, truth: ArrayLike, bound: ArrayLike) -> tuple[float, float, float]:
     """Mean square of standardised errors of losses over their number, 1 where the bound is attained, with 95 % limits.
 
     Parameters
     ----------
-    losses : array, shape (D, P)
-        Told from D measurements.
-    truth : array, shape (P,)
-    bound : array, shape (P, P)
+    losses : array_like, shape (D, P)
+        Told from D measurements, 1 or more.
+    truth : array_like, shape (P,)
+    bound : array_like, shape (P, P)
+        Positive definite.
 
     Returns
     -------
     ratio, low, high : float
         The sum of squares of a sample of normal errors at the bound is χ² with D P degrees of freedom, which gives the
         limits.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument and what would be valid.
     """
-    errors = np.linalg.solve(np.linalg.cholesky(bound), (losses - truth).T)
+    told, right, least = (
+        finite_array(name, array) for name, array in (("losses", losses), ("truth", truth), ("bound", bound))
+    )
+    if told.ndim != 2 or told.size == 0:
+        raise ValueError(f"losses must have shape (D, P), one measurement or more, got {told.shape}")
+    size = told.shape[1]
+    if right.shape != (size,):
+        raise ValueError(f"truth must have shape ({size},), one a loss, got {right.shape}")
+    if least.shape != (size, size) or not (np.linalg.eigvalsh(least) > 0.0).all():
+        raise ValueError(f"bound must be a positive definite matrix ({size}, {size}), got {least.tolist()}")
+    errors = np.linalg.solve(np.linalg.cholesky(least), (told - right).T)
     total, free = float((errors**2).sum()), errors.size
     low, high = chi2.ppf([0.975, 0.025], free)
     return total / free, total / float(low), total / float(high)

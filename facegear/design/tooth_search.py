@@ -12,12 +12,13 @@ their sum from above.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.stats import binomtest, norm
 
-from facegear.support.parameters import finite_array, integer_at_least, keep, positive, within
+from facegear.support.parameters import finite_array, integer_at_least, integer_within, keep, positive, within
 from facegear.support.types import FloatArray
 
 
@@ -63,11 +64,25 @@ class SlotFilter:
         spectrum = np.fft.rfft(values, axis=-2) * np.fft.rfft(self.pattern, axis=0).conj()
         return np.asarray(np.fft.irfft(spectrum.sum(axis=-1), len(self.pattern), axis=-1), dtype=float)
 
-    def found(self, signals: ArrayLike) -> tuple[NDArray[np.intp], FloatArray]:
-        """Most likely slot and estimate of a of each signal (..., N, S), each of shape (...)."""
+    def found(self, signals: ArrayLike) -> tuple[Any, Any]:
+        """Most likely slot and estimate of a of each signal.
+
+        Some slot is always the most likely one, of a signal without any pattern too: an estimate within a few times
+        :meth:`amount_deviation` of 0 says that there is none, and the slot is then one of chance.
+
+        Parameters
+        ----------
+        signals : array_like, shape (..., N, S)
+
+        Returns
+        -------
+        slots : int, or array of int, shape (...)
+        amounts : float, or array, shape (...)
+            Plain numbers for one signal.
+        """
         projections = self.projections(signals)
-        slots = projections.argmax(axis=-1)
-        return slots, np.asarray(projections.max(axis=-1) / self.energy, dtype=float)
+        slots, amounts = projections.argmax(axis=-1), projections.max(axis=-1) / self.energy
+        return (int(slots), float(amounts)) if projections.ndim == 1 else (slots, amounts)
 
     @property
     def distances(self) -> FloatArray:
@@ -106,10 +121,16 @@ def share_interval(hits: int, trials: int, confidence: float = 0.95) -> tuple[fl
     Parameters
     ----------
     hits, trials : int
+        0 to `trials`, and 1 or more.
     confidence : float
         From 0.5 to 0.9999.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument and what would be valid.
     """
     trials = integer_at_least("trials", trials, 1)
     level = within("confidence", confidence, 0.5, 0.9999)
-    interval = binomtest(integer_at_least("hits", hits, 0), trials).proportion_ci(level, "wilson")
+    interval = binomtest(integer_within("hits", hits, 0, trials), trials).proportion_ci(level, "wilson")
     return float(interval.low), float(interval.high)

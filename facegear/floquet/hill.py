@@ -26,10 +26,12 @@ from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.floquet.piecewise import fourier_series
 from facegear.floquet.stepping import Family
-from facegear.support.parameters import integer_within
+from facegear.support.parameters import integer_within, positive
 from facegear.support.types import ComplexArray, FloatArray
 
 _MOST_HARMONICS = 1000
+# Part of π/T0 by which truncation may put an exponent beyond the edge of the strip.
+_ON_THE_EDGE = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,14 +137,31 @@ def in_base_strip(spectrum: HillSpectrum) -> ComplexArray:
     -------
     complex array, shape (2n,)
         Largest real part first [1/s].
+
+    Raises
+    ------
+    ArithmeticError
+        If the harmonics are too few to bring all exponents there, H below their frequencies over 2π/T0. As many are
+        needed, not always enough.
     """
-    return _chosen(spectrum, np.abs(spectrum.exponents.imag))
+    chosen, edge = _chosen(spectrum, np.abs(spectrum.exponents.imag)), np.pi / spectrum.period
+    if np.abs(chosen.imag).max() > (1.0 + _ON_THE_EDGE) * edge:
+        harmonics = (len(spectrum.vectors) - 1) // 2
+        # The images furthest up are those of the fastest motion with the last harmonic.
+        fastest = np.abs(spectrum.exponents.imag).max() - 2.0 * edge * harmonics
+        raise ArithmeticError(
+            f"{harmonics} harmonics do not bring all exponents into the strip up to π/T0 = {edge:.6g} rad/s: the "
+            f"fastest motion, of about {fastest:.6g} rad/s, takes at least {int(np.ceil(fastest / (2.0 * edge)))}, "
+            "and as many more as its own series has; by_mean_harmonic needs only these"
+        )
+    return chosen
 
 
 def by_mean_harmonic(spectrum: HillSpectrum) -> ComplexArray:
     """Return the 2n eigenvalues whose eigenvectors are centred best, |mean harmonic| smallest.
 
-    Their imaginary parts need not lie in the base strip: they are the frequencies at which a motion is the largest.
+    Their imaginary parts need not lie in the base strip: they are the frequencies at which a motion is the largest, and
+    H need not reach from there to the strip.
     On the edge it is no better than :func:`in_base_strip`.
 
     Returns
@@ -205,12 +224,30 @@ def logarithms(values: ComplexArray, period: float) -> ComplexArray:
     """Exponents [1/s] of multipliers, largest modulus first; −∞ of those that are 0."""
     ordered = np.asarray(values)[np.argsort(-np.abs(values), kind="stable")]
     with np.errstate(divide="ignore"):
-        return np.asarray(np.log(ordered.astype(complex)) / period, dtype=complex)
+        logs = np.log(ordered.astype(complex))
+    # By parts: an infinite complex number over a real one has an undefined imaginary part.
+    return np.asarray(logs.real / period + 1j * (logs.imag / period), dtype=complex)
 
 
 def apart(found: ComplexArray, truth: ComplexArray, period: float) -> FloatArray:
-    """Distance of each true exponent from the nearest found one, multiples of 2πi/T0 taken off, shape (2n,) [1/s]."""
-    turn = 2.0 * np.pi / period
+    """Distance of each true exponent from the nearest found one, multiples of 2πi/T0 taken off, shape (2n,) [1/s].
+
+    Parameters
+    ----------
+    found, truth : complex array, shapes (m,) and (2n,)
+        One or more [1/s].
+    period : float
+        T0 [s], greater than 0.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument and what would be valid.
+    """
+    turn = 2.0 * np.pi / positive("period", period, "s")
+    for name, values in (("found", found), ("truth", truth)):
+        if np.ndim(values) != 1 or np.size(values) == 0:
+            raise ValueError(f"{name} must be a list of one exponent or more, got shape {np.shape(values)}")
     difference = np.asarray(truth)[:, None] - np.asarray(found)
     wrapped = difference.real + 1j * (difference.imag - turn * np.round(difference.imag / turn))
     return np.asarray(np.abs(wrapped).min(axis=1), dtype=float)

@@ -9,7 +9,7 @@ double ones included.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,9 +21,11 @@ from facegear.support.types import FloatArray
 
 # Parts of the first half wave's frequency below which one counts as 0: the square root of rounding.
 _AT_REST = 1e-7
+# Parts of the largest entry of a matrix that may be rounding.
+_ROUNDING = 1e-10
 
 
-def count_below(frequency: float, mass: FloatArray, stiffness: FloatArray, shafts: Sequence[Shaft]) -> int:
+def count_below(frequency: float, mass: FloatArray, stiffness: FloatArray, shafts: Iterable[Shaft]) -> int:
     """Count the undamped natural frequencies below one, rods unreduced (Wittrick and Williams).
 
     Parameters
@@ -32,7 +34,7 @@ def count_below(frequency: float, mass: FloatArray, stiffness: FloatArray, shaft
         ω [rad/s], greater than 0.
     mass, stiffness : array, shape (n, n)
         Of the model with each rod as a massless spring; symmetric.
-    shafts : sequence of Shaft
+    shafts : iterable of Shaft
 
     Returns
     -------
@@ -40,7 +42,7 @@ def count_below(frequency: float, mass: FloatArray, stiffness: FloatArray, shaft
         Number of negative eigenvalues of the dynamic stiffness at ω, and of frequencies that the rods have below it
         with their ends held.
     """
-    frequency = positive("frequency", frequency, "rad/s")
+    frequency, shafts = positive("frequency", frequency, "rad/s"), checked_shafts(shafts, len(mass))
     dynamic = stiffness - frequency**2 * mass
     for shaft in shafts:
         massless = shaft.rod.stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -52,15 +54,16 @@ def count_below(frequency: float, mass: FloatArray, stiffness: FloatArray, shaft
 
 
 def exact_frequencies(
-    mass: ArrayLike, stiffness: ArrayLike, shafts: Sequence[Shaft], count: int
+    mass: ArrayLike, stiffness: ArrayLike, shafts: Iterable[Shaft], count: int
 ) -> FloatArray:
     """Find the lowest undamped natural frequencies of a model with unreduced rods.
 
     Parameters
     ----------
     mass, stiffness : array_like, shape (n, n)
-        Of the model with each rod as a massless spring; symmetric, the mass positive definite.
-    shafts : sequence of Shaft
+        Of the model with each rod as a massless spring; symmetric, the mass positive definite, the stiffness with no
+        negative eigenvalue.
+    shafts : iterable of Shaft
         At least one.
     count : int
         How many, at least 1.
@@ -90,6 +93,15 @@ def exact_frequencies(
     if mass.shape != stiffness.shape or mass.shape[0] != mass.shape[1]:
         raise ValueError(
             f"mass and stiffness must be square and of one size, got {mass.shape} and {stiffness.shape}"
+        )
+    for name, matrix in (("mass", mass), ("stiffness", stiffness)):
+        if np.abs(matrix - matrix.T).max() > _ROUNDING * np.abs(matrix).max():
+            raise ValueError(f"{name} must be symmetric, got {matrix.tolist()}")
+    if np.linalg.eigvalsh(mass)[0] <= 0.0:
+        raise ValueError(f"mass must be positive definite, got {mass.tolist()}")
+    if np.linalg.eigvalsh(stiffness)[0] < -_ROUNDING * np.abs(stiffness).max():
+        raise ValueError(
+            f"stiffness must have no negative eigenvalue, as none of a model at rest has, got {stiffness.tolist()}"
         )
     shafts = checked_shafts(shafts, len(mass))
     if not shafts:

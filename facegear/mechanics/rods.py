@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,7 +37,7 @@ from facegear.support.parameters import (
 )
 from facegear.support.types import FloatArray
 
-MOST_MODES = 50
+MOST_MODES = 40
 """Most fixed-interface modes of a rod."""
 
 
@@ -54,7 +54,7 @@ class Rod:
     damping : float
         c between its ends [N m s/rad], 0 or greater; all along the rod the damping is c/k times the stiffness.
     modes : int
-        Number n of modes with both ends held, from 0 to 50. With 0 its mass moves with the ends alone.
+        Number n of modes with both ends held, from 0 to 40. With 0 its mass moves with the ends alone.
     material : Material
 
     Raises
@@ -194,14 +194,14 @@ class Shaft:
         return np.asarray(rows.T @ own @ rows)
 
 
-def with_mass(system: PeriodicSystem, shafts: Sequence[Shaft]) -> PeriodicSystem:
+def with_mass(system: PeriodicSystem, shafts: Iterable[Shaft]) -> PeriodicSystem:
     """Give springs of a system the mass of rods.
 
     Parameters
     ----------
     system : PeriodicSystem
         Of n coordinates, with each rod as a massless spring and damper between the same coordinates.
-    shafts : sequence of Shaft
+    shafts : iterable of Shaft
 
     Returns
     -------
@@ -252,8 +252,11 @@ def with_mass(system: PeriodicSystem, shafts: Sequence[Shaft]) -> PeriodicSystem
     )
 
 
-def checked_shafts(shafts: Sequence[Shaft], size: int) -> tuple[Shaft, ...]:
+def checked_shafts(shafts: Iterable[Shaft], size: int) -> tuple[Shaft, ...]:
     """Return shafts between coordinates of a model that has `size` of them, and refuse what are none."""
+    if not isinstance(shafts, Iterable):
+        raise TypeError(f"shafts must be a list of Shaft, got {named(shafts)}")
+    shafts = tuple(shafts)
     for number, shaft in enumerate(shafts):
         if not isinstance(shaft, Shaft):
             raise TypeError(f"shafts[{number}] must be a Shaft, got {named(shaft)}")
@@ -262,4 +265,4 @@ def checked_shafts(shafts: Sequence[Shaft], size: int) -> tuple[Shaft, ...]:
                 raise ValueError(
                     f"shafts[{number}].{name} must be a coordinate from 0 to {size - 1}, got {place!r}"
                 )
-    return tuple(shafts)
+    return shafts

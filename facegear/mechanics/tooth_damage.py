@@ -21,13 +21,15 @@ from facegear.floquet.multipliers import Method, transition_matrices
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, named
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 from facegear.mechanics.torsional import Torsional
-from facegear.support.parameters import integer_within, keep, nonnegative, one_of, within
+from facegear.support.parameters import finite, integer_within, keep, nonnegative, one_of
 from facegear.support.types import FloatArray
 
 Wheel = Literal["face gear", "pinion"]
 
 # Part of the arm by which a pair may move as its load is handed on to that of an older pair.
 _HANDED_ON = 1e-9
+# Less loss is not told from rounding.
+_LEAST_LOSS = 1e-9
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ class DamagedTooth:
     torsional : Torsional
         The intact gearbox, with one load a tooth pair.
     loss : float
-        Part of stiffness and damping that the pair has lost [-], above 0 and below 1.
+        Part of stiffness and damping that the pair has lost [-], at least 1e-9 and below 1.
     tooth : int
         Which tooth, from 0 to N − 1: that of the pair which comes into mesh at the start of this mesh period.
     wheel : {"face gear", "pinion"}
@@ -71,11 +73,9 @@ class DamagedTooth:
         if not isinstance(self.torsional, Torsional):
             raise TypeError(f"torsional must be a Torsional, got {named(self.torsional)}")
         one_of("wheel", self.wheel, ("face gear", "pinion"))
-        largest = float(np.nextafter(1.0, 0.0))
-        hint = "a part of the stiffness of the pair; the intact gearbox is the Torsional itself"
         keep(
             self,
-            loss=within("loss", self.loss, 1e-9, largest, hint=hint),
+            loss=_checked_loss(self.loss),
             tooth=integer_within("tooth", self.tooth, 0, self.teeth - 1),
             torque=nonnegative("torque", self.torque, "N m"),
         )
@@ -177,6 +177,16 @@ class DamagedTooth:
                 )
             )
         return dataclasses.replace(whole, loads=tuple(loads))
+
+
+def _checked_loss(value: object) -> float:
+    loss = finite("loss", value)
+    if not _LEAST_LOSS <= loss < 1.0:
+        raise ValueError(
+            f"loss must be at least {_LEAST_LOSS:g} and below 1, got {value!r} (a part of the stiffness of the pair; "
+            "the intact gearbox is the Torsional itself)"
+        )
+    return loss
 
 
 def _window(number: int, periods: int) -> PiecewiseChebyshev:

@@ -75,3 +75,12 @@ def test_bad_input_names_the_parameter():
         SlotFilter(PATTERN).found(np.zeros((7, 11)))
     with pytest.raises(ValueError, match="deviation"):
         SlotFilter(PATTERN).hit_rate_bounds(0.0)
+    with pytest.raises(ValueError, match="hits must be an integer from 0 to 3, got 5"):
+        share_interval(5, 3)
+
+
+def test_one_signal_gives_plain_numbers():
+    slot, amount = SlotFilter(PATTERN).found(np.roll(PATTERN, 4, axis=0))
+    assert (type(slot), type(amount), slot) == (int, float, 4)
+    # Where there is nothing the amount says so.
+    assert abs(SlotFilter(PATTERN).found(np.zeros((11, 7)))[1]) < 1e-12

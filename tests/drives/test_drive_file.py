@@ -562,8 +562,9 @@ class TestShaftsWithMass:
         assert sentence.startswith("input shaft of 98.4 mm diameter is thicker than the root circle")
 
     def test_lengths_out_of_range_are_refused(self):
-        told = refusal(GEARBOX + self.LENGTHS.replace("300", "0.01"))
-        assert "gearbox.input_length_mm must lie in [0.1, 20000] in mm, got 0.01 mm" in told
+        # 0.3 is a length in metres.
+        told = refusal(GEARBOX + self.LENGTHS.replace("300", "0.3"))
+        assert "gearbox.input_length_mm must lie in [1, 20000] in mm, got 0.3 mm" in told
 
 
 def test_mistakes_in_the_gearbox():

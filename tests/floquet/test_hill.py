@@ -10,6 +10,7 @@ from facegear.floquet.hill import (
     hill_matrix,
     hill_spectrum,
     in_base_strip,
+    logarithms,
     without_sorting,
 )
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
@@ -117,6 +118,38 @@ def test_on_the_edge_of_the_strip_sorting_fails_and_doing_without_does_not():
     assert apart(without_sorting(system, 12), truth, system.period).max() < 1e-12
 
 
+def test_harmonics_that_do_not_reach_the_strip_are_refused():
+    """A motion of frequency 1 under a stiffness of frequency 0.02: 50 harmonics from itself to the strip."""
+    slow = Mathieu(depth=0.2, damping_ratio=0.1).system(0.02)
+    with pytest.raises(
+        ArithmeticError, match="10 harmonics do not bring all exponents into the strip"
+    ) as told:
+        in_base_strip(hill_spectrum(slow, 10))
+    needed = int(str(told.value).split("takes at least ")[1].split(",")[0])
+    assert 50 <= needed <= 55
+    found = in_base_strip(hill_spectrum(slow, 70))
+    assert apart(found, exponents(slow), slow.period).max() < 1e-9
+    assert np.abs(found.imag).max() < 0.01
+    # These need no strip.
+    spectrum = hill_spectrum(slow, 20)
+    assert apart(by_mean_harmonic(spectrum), exponents(slow), slow.period).max() < 1e-5
+    assert apart(without_sorting(slow, 20), exponents(slow), slow.period).max() < 1e-5
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_multiplier_of_zero_has_an_exponent_of_minus_infinity():
+    # Whether what has died within a period is 0 or rounding differs from machine to machine.
+    slow, dead = logarithms(np.array([0.0, 0.5]), 0.3)
+    assert slow == pytest.approx(np.log(0.5) / 0.3)
+    assert (dead.real, dead.imag) == (-np.inf, 0.0)
+    found = exponents(PeriodicSystem([[1.0]], [[1e4]], [[1.0]], (), period=1.0))
+    assert not np.isnan(found).any()
+    assert found[0] == pytest.approx(-1e-4, rel=1e-4)
+    np.testing.assert_allclose(
+        logarithms(np.array([-1.0, 1j]), 2.0), [0.5j * np.pi, 0.25j * np.pi], atol=1e-15
+    )
+
+
 def test_mean_harmonics_number_the_images():
     spectrum = hill_spectrum(SYSTEMS["smooth"], 8)
     turn = 2.0 * np.pi / PERIOD
@@ -149,3 +182,10 @@ def test_bad_input_names_the_parameter():
         hill_matrix(Mathieu(depth=0.1), 3)
     with pytest.raises(ValueError, match="jumps of the state"):
         without_sorting(oscillator(jumps=(StateJump(0.3, 0.5 * np.eye(2)),)), 3)
+    one = np.array([1j])
+    with pytest.raises(ValueError, match="period must be greater than 0"):
+        apart(one, one, 0.0)
+    with pytest.raises(ValueError, match="found must be a list of one exponent or more"):
+        apart(np.array([]), one, 1.0)
+    with pytest.raises(ValueError, match="truth must be a list of one exponent or more"):
+        apart(one, np.array([]), 1.0)

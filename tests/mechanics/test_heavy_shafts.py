@@ -1,5 +1,6 @@
 """Gearbox whose shafts have mass: limits, finite elements, DOP853, and the way through maps and labels."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -119,6 +120,16 @@ def test_shafts_without_length_are_massless():
     np.testing.assert_allclose(output.exact_frequencies(2), output.natural_frequencies()[:2], rtol=1e-3)
 
 
+def test_exact_frequencies_of_massless_shafts_are_all_that_there_are():
+    none = HeavyShafts(QUIET, 0.0, 0.0)
+    np.testing.assert_allclose(none.exact_frequencies(3), QUIET.natural_frequencies(), rtol=1e-14)
+    assert none.exact_frequencies(1).shape == (1,)
+    with pytest.raises(
+        ValueError, match="count without a length of a shaft must be an integer from 1 to 3, got 4"
+    ):
+        none.exact_frequencies(4)
+
+
 def test_forced_response_takes_it():
     wave = fg.PiecewiseChebyshev.fit(lambda x, piece: 1e-5 * np.cos(2.0 * np.pi * x), [0.0])
     short = HeavyShafts(BASE, 1e-3, 1e-3)
@@ -141,6 +152,10 @@ def test_what_cannot_be_built_is_named():
     model = HeavyShafts(BASE, input_length=0.3, output_length=0.3)
     (sentence,) = model.not_buildable
     assert sentence.startswith("input shaft of 158 mm diameter is thicker than the root circle of the pinion")
+    # Long ones too are told in plain digits.
+    assert "at most 32.1 mm long" in sentence
+    (far,) = replace(model, input_length=0.0, output_length=20.0).not_buildable
+    assert re.search(r"at most 1[0-9]{4} mm long", far)
     first, second = model.largest_lengths
     assert replace(model, input_length=0.999 * first, output_length=0.999 * second).not_buildable == ()
     assert len(replace(model, input_length=1.001 * first, output_length=1.001 * second).not_buildable) == 2
@@ -154,14 +169,14 @@ def test_what_cannot_be_built_is_named():
     [
         ({"torsional": "gearbox"}, TypeError, "torsional must be a Torsional"),
         (
-            {"input_length": 1e-5},
+            {"input_length": 3e-4},
             ValueError,
-            "input_length must be 0 for a massless shaft, or at least 0.0001 m",
+            "input_length must be 0 for a massless shaft, or at least 0.001 m",
         ),
         ({"input_length": -0.1}, ValueError, "input_length"),
         ({"output_length": 30.0}, ValueError, "output_length"),
         ({"output_length": "long"}, TypeError, "output_length"),
-        ({"modes": 99}, ValueError, "modes"),
+        ({"modes": 41}, ValueError, "modes"),
         ({"material": "steel"}, TypeError, "material"),
     ],
 )

@@ -106,8 +106,8 @@ def test_response_of_another_tooth_comes_later():
 @pytest.mark.parametrize(
     ("change", "error", "message"),
     [
-        ({"loss": 0.0}, ValueError, "loss must lie in"),
-        ({"loss": 1.0}, ValueError, "loss must lie in"),
+        ({"loss": 0.0}, ValueError, "loss must be at least 1e-09 and below 1, got 0"),
+        ({"loss": 1.0}, ValueError, "loss must be at least 1e-09 and below 1, got 1"),
         ({"loss": "0.1"}, TypeError, "loss"),
         ({"tooth": 107}, ValueError, "tooth"),
         ({"tooth": 31, "wheel": "pinion"}, ValueError, "tooth"),
