@@ -423,8 +423,8 @@ def _teeth(found: _Found, drive: Drive, material: Material, stiffness: float | N
     damping = values["mesh_damping"]
     if gearbox is None and damping == 0.0:
         raise ValueError(
-            "teeth.tooth_damping_us is missing, or 0: without a section gearbox, whose mesh damping it would be, it must "
-            f"be {found.keys['teeth']['mesh_damping'].valid.removeprefix('0, or ')}"
+            "teeth.tooth_damping_us is missing, or 0: without a section gearbox, whose mesh damping it would be, it "
+            f"must be {found.keys['teeth']['mesh_damping'].valid.removeprefix('0, or ')}"
         )
     if gearbox:
         if gearbox["mesh_damping"] == 0.0:

@@ -358,9 +358,9 @@ _GEARBOX = Section(
 )
 
 _TEETH = Section(
-    "Teeth as springs between gear and pinions (chapter 8); without it they are rigid. The springs follow the contact, whose lines "
-    "must not end on the pinion's base circle: 22 teeth of the pinion are enough at a pressure angle of 25°, 34 at 20°; "
-    "whether fewer are depends on the gear ratio, and a file with too few is refused.",
+    "Teeth as springs between gear and pinions (chapter 8); without it they are rigid. The springs follow the contact, "
+    "whose lines must not end on the pinion's base circle: 22 teeth of the pinion are enough at a pressure angle of "
+    "25°, 34 at 20°; whether fewer are depends on the gear ratio, and a file with too few is refused.",
     (
         Key(
             "correction_factor",
@@ -375,7 +375,7 @@ _TEETH = Section(
         ),
         Key(
             "tooth_damping_us",
-            "$c_m/k_m$, mesh damping over mesh stiffness: 0 for that of `gearbox`; without a `gearbox` it must be given",
+            "$c_m/k_m$, mesh damping over mesh stiffness: 0 for that of `gearbox`; without one it must be given",
             "number",
             "µs",
             1e-3,
@@ -402,8 +402,8 @@ _TEETH = Section(
         ),
         Key(
             "clocking",
-            "phase by which the teeth of the back face are ahead of those of the front, in mesh periods; it needs a pinion "
-            "on the back face",
+            "phase by which the teeth of the back face are ahead of those of the front, in mesh periods; it needs a "
+            "pinion on the back face",
             "number",
             "",
             -1.0,

@@ -132,7 +132,9 @@ class MeshOscillator(PinionsOnDisk):
                 f"become rigid ones, got {self.mesh_damping!r}"
             )
         if damping > _MOST_DAMPING:
-            microseconds = f" (µs? {1e-6 * damping:.6g} would be valid)" if 1e-6 * damping <= _MOST_DAMPING else ""
+            microseconds = (
+                f" (µs? {1e-6 * damping:.6g} would be valid)" if 1e-6 * damping <= _MOST_DAMPING else ""
+            )
             raise ValueError(
                 f"mesh_damping must be greater than 0 and at most {_MOST_DAMPING:g} s, got {self.mesh_damping!r} s"
                 f"{microseconds}"
