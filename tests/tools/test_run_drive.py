@@ -92,6 +92,10 @@ def test_papermill_makes_the_report_in_any_folder(tmp_path, example):
         for cell in nbformat.read(tmp_path / "out.ipynb", as_version=4).cells
         for output in cell.get("outputs", [])
     ]
+    words = " ".join(str(form) for output in outputs for form in output.get("data", {}).values())
+    faces = bool(file.teeth and file.teeth.sides)
+    assert ("on the faces front, back of the gear" in words) == ("0.5 mesh periods ahead" in words) == faces
+    assert ("power of a mesh" in words) == (file.roles is not None) == ("power of a pinion" not in words)
     pictures = [output for output in outputs if "image/svg+xml" in output.get("data", {})]
     assert len(pictures) == 6 + (file.torsional is not None)
     assert not [output for output in outputs if output.output_type in ("error", "stream")]
