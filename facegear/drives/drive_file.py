@@ -401,6 +401,11 @@ def _roles(found: _Found, drive: Drive) -> tuple[Role, ...] | None:
         raise ValueError(
             "teeth.sides and teeth.clocking must be left out beside second_gear: each gear has teeth on one face"
         )
+    if abs(drive.shaft_angle - math.pi / 2.0) > 1e-9:
+        raise ValueError(
+            f"{found.key('gears', 'shaft_angle')} must be 90° beside second_gear, or two gears on one axis are not "
+            f"alike, got {math.degrees(drive.shaft_angle):.6g}°"
+        )
     if len(roles) != len(angles) or "input" not in roles:
         raise ValueError(
             f"second_gear.roles must list one role for each of {len(angles)} pinions, an input among them, got "

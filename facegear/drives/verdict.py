@@ -246,6 +246,8 @@ def _resonances(found: Sequence[Tongue]) -> str:
 
 def _left_out(file: DriveFile) -> str:
     missing = ["torsion (the file has no section gearbox)"] * (file.torsional is None)
+    if file.torsional is not None and file.roles is not None:
+        missing += ["that torsion is that of one pinion on one gear, not of a train that shares its torque"]
     if file.teeth is None:
         missing += ["the flexibility of the teeth (the file has no section teeth)"]
         missing += ["how tooth pairs share the load"] * file.drive.has_line_contact

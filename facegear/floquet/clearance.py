@@ -60,6 +60,8 @@ class ClearanceSystem:
         require_system(self.system)
         sides = tuple(integer_within("sides", side, -1, 1) for side in _sequence("sides", self.sides))
         clearances = tuple(nonnegative("clearances", b) for b in _sequence("clearances", self.clearances))
+        if not self.system.loads:
+            raise ValueError("system must have at least one load for clearances, got none")
         for name, values in (("sides", sides), ("clearances", clearances)):
             if len(values) != len(self.system.loads):
                 raise ValueError(

@@ -37,6 +37,8 @@ _SAME = 1e-11
 _REFINEMENTS = 60
 # Change of the place in a panel at which a step of Newton's method is the last: the next would be its square.
 _FOUND = 1e-10
+# Panels beyond which each step of Newton's method takes seconds.
+_MOST_PANELS = 5000
 # Samples of a panel, over its nodes, among which changes of sign are looked for.
 _DENSITY = 3
 
@@ -69,7 +71,20 @@ class Panels:
         )
 
     def edges(self, system: ClearanceSystem) -> FloatArray:
-        """Return the ends of panels without regard to contacts, breakpoints among them, from 0 to 1."""
+        """Return the ends of panels without regard to contacts, breakpoints among them, from 0 to 1.
+
+        Raises
+        ------
+        ArithmeticError
+            If there are so many that no motion would be found in any time.
+        """
+        turns = system.fastest * system.period / self.angle
+        if turns > _MOST_PANELS:
+            raise ArithmeticError(
+                f"the fastest motion in contact, {system.fastest:.3g} rad/s, takes {turns:.3g} panels of "
+                f"{self.angle:g} rad in {system.period:.3g} s, more than {_MOST_PANELS}: contacts are too stiff to "
+                "resolve"
+            )
         return system.divided(self.angle)
 
 

@@ -46,6 +46,8 @@ _FIRST_ARC, _ONTO_BRANCH = 1e-3, 1e-3
 _STRAIGHT = 0.9
 # Way from the tangent, over the arc, at which another family may have been met.
 _ASIDE = 0.5
+# Distance of the end of a period from its start, over the size of the motion, at which that is one that repeats itself.
+_PERIODIC = 1e-4
 # Distance of the ends of panels, in periods, that a derivative along them may have.
 _ALIKE = 1e-3
 # Motions of a family from which another one nearby is looked for.
@@ -214,7 +216,18 @@ def followed(
     setting = _Setting.of(systems, orbit, low, high, following)
     at = within("parameter", parameter, setting.low, setting.high)
     sense = math.copysign(1.0, finite("direction", direction))
-    return _followed(setting, _start(setting, orbit, at, sense), setting.following.longest_arc / 30.0)
+    first = _start(setting, orbit, at, sense)
+    missed = np.abs(
+        setting.scaled(first.step.transition @ first.state + first.step.moved - first.state)
+    ).max()
+    if missed > _PERIODIC:
+        raise ValueError(
+            f"orbit must be a motion of systems({at:.9g}): from where it begins, that ends {missed:.2g} of its size "
+            "away"
+        )
+    if at == (setting.high if sense > 0.0 else setting.low):
+        return Branch(np.array([at]), (orbit,), (), f"at {at:.9g}, the end of the range")
+    return _followed(setting, first, setting.following.longest_arc / 30.0)
 
 
 def doubled(
@@ -313,6 +326,8 @@ class _Setting:
     following: Following
     scale: FloatArray
     size: float
+    kind: tuple[int, int]
+    """Numbers of coordinates and loads."""
 
     @classmethod
     def of(
@@ -334,7 +349,8 @@ class _Setting:
         scale = orbit.system.scale
         states = orbit.state(np.linspace(0.0, 1.0, 200, endpoint=False)) @ scale.T
         size = positive("orbit", float(np.abs(states).max()))
-        return cls(systems, times * orbit.periods, low, high, following or Following(), scale, size)
+        kind = orbit.system.size, len(orbit.system.sides)
+        return cls(systems, times * orbit.periods, low, high, following or Following(), scale, size, kind)
 
     @property
     def span(self) -> float:
@@ -347,6 +363,11 @@ class _Setting:
     def one(self, parameter: float) -> ClearanceSystem:
         system = self.systems(parameter)
         require_clearances(system)
+        if (system.size, len(system.sides)) != self.kind:
+            raise ArithmeticError(
+                f"systems has {system.size} coordinates and {len(system.sides)} loads at {parameter:.9g}, "
+                f"{self.kind[0]} and {self.kind[1]} where the family began"
+            )
         return system
 
     def at(self, parameter: float) -> ClearanceSystem:

@@ -259,11 +259,22 @@ def _first_pattern(whole: ClearanceSystem, count: int, guess: Any, panels: Panel
             raise ValueError(
                 f"guess must be an orbit of {count} periods, as `periods` says, got {guess.periods}"
             )
+        _require_kin("guess", guess, whole)
         return guess.pattern
     state = finite_array("guess", guess)
     if state.shape != (2 * whole.size,):
         raise ValueError(f"guess must be a state of shape ({2 * whole.size},), got shape {state.shape}")
     return contacts_along(whole, state)
+
+
+def _require_kin(name: str, orbit: Orbit, system: ClearanceSystem) -> None:
+    """Refuse an orbit of a system with another number of coordinates or loads."""
+    own, loads = orbit.system.size, len(orbit.system.sides)
+    if (own, loads) != (system.size, len(system.sides)):
+        raise ValueError(
+            f"{name} must be an orbit of a system with {system.size} coordinates and {len(system.sides)} loads, got "
+            f"one of {own} and {loads}"
+        )
 
 
 def _settled(
@@ -274,7 +285,10 @@ def _settled(
     change, mismatch = np.inf, np.inf
     for number in range(_MOST_STEPS):
         step = Step.of(whole, pattern, panels)
-        motion = step.motion(_fixed_point(step, size))
+        state = _fixed_point(step, size)
+        if state is None:
+            raise ArithmeticError(_why_none(pattern, number))
+        motion = step.motion(state)
         change = _change(size, motion, before)
         found, mismatch = step.pattern(motion)
         if change < _SETTLED and mismatch < _CONTACT:
@@ -301,15 +315,26 @@ def _change(scale: FloatArray, motion: Motion, before: PiecewiseChebyshev | None
     return float(np.abs(away).max() / max(np.abs(states).max(), 1e-300))
 
 
-def _fixed_point(step: Step, scale: FloatArray) -> FloatArray:
+def _fixed_point(step: Step, scale: FloatArray) -> FloatArray | None:
+    """State to which the motion comes back, or nothing where a multiplier is 1."""
     inverse = np.linalg.inv(scale)
     away = np.eye(len(scale)) - scale @ step.transition @ inverse
     values = np.linalg.svd(away, compute_uv=False)
     if not np.isfinite(values).all() or values[-1] < _SINGULAR * values[0]:
-        pressed = step.along.pattern.pressed.any()
-        raise ArithmeticError(
-            "no motion is known: a multiplier is 1, an undamped resonance or a rigid-body motion that nothing holds"
-            if pressed
-            else "nothing is in contact: the force is too small to close the gap, or points away from it"
-        )
+        return None
     return np.asarray(inverse @ np.linalg.solve(away, scale @ step.moved))
+
+
+def _why_none(pattern: Pattern, steps: int) -> str:
+    """Say why the motion of a pattern is not known."""
+    if steps:
+        return (
+            f"Newton's method came to contacts that hold nothing, or to a motion without any, after {steps} steps: "
+            "there may be no such motion, or a guess nearer by finds it"
+        )
+    if pattern.pressed.any():
+        return "no motion is known: a multiplier is 1, an undamped resonance or a rigid-body motion that nothing holds"
+    return (
+        "nothing is in contact in the first guess, where all loads of side 1 are pressed: the force is too small to "
+        "close the gap, or points away from it; give another guess"
+    )

@@ -15,7 +15,7 @@ from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.contact_panels import Pattern, merged
 from facegear.floquet.periodic import weighted_shape
 from facegear.floquet.piecewise import Side
-from facegear.support.parameters import finite_array, integer_at_least
+from facegear.support.parameters import finite_array, integer_at_least, integer_within
 from facegear.support.types import FloatArray
 
 # Largest angle of the fastest natural motion in a step [rad].
@@ -116,7 +116,7 @@ def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int 
     periods : int
         How many periods to follow them.
     kept : int
-        Of how many periods, the last ones, the states are returned.
+        Of how many periods, the last ones, the states are returned, 1 to `periods`.
 
     Returns
     -------
@@ -129,7 +129,7 @@ def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int 
         Naming the argument.
     """
     count = integer_at_least("periods", periods, 1)
-    kept = integer_at_least("kept", kept, 1)
+    kept = integer_within("kept", kept, 1, count)
     start = finite_array("states", states)
     n = system.size
     if start.ndim != 2 or start.shape[1] != 2 * n:

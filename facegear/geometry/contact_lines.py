@@ -39,6 +39,8 @@ _FIRST = 1e-3
 # Contact lines that are held against the shaper to find where it cuts; pieces into which a search divides an interval,
 # and how short that may be in the end [rad].
 _LINES, _SECTIONS, _SAME = 48, 17, 1e-11
+# How near to where the cut begins or takes all a line is looked at too, over the sweep.
+_BESIDE = 1e-6
 # Width of the interval that a search ends with, relative and, next to zero, absolute.
 _DIGIT, _SMALL = 4.0 * np.finfo(float).eps, 1e-20
 # Steps within which a search settles that does no worse than halve its interval now and then.
@@ -384,18 +386,31 @@ class ContactRegion:
     @cached_property
     def _cut_kinks(self) -> tuple[float, ...]:
         """C at which the shaper begins or ceases to shorten lines, or another part of it does so [rad]."""
+        return (*(c for c, _ in self._cut_begins), *self._cut_corners)
+
+    @cached_property
+    def _cut_begins(self) -> tuple[tuple[float, float], ...]:
+        """C at which the shaper begins or ceases to shorten lines [rad], and on which side of it it does, 1 or -1."""
         c, shortened = self._cut.lines, self._cut.shortened
-        kinks = [
-            root(lambda x: self._clear(x, end=0), c[k], c[k + 1])
+        return tuple(
+            (root(lambda x: self._clear(x, end=0), c[k], c[k + 1]), 1.0 if shortened[k + 1] else -1.0)
             for k in np.flatnonzero(shortened[:-1] != shortened[1:])
-        ]
-        return (*kinks, *self._cut_corners)
+        )
 
     @cached_property
     def _affected(self) -> tuple[FloatArray, FloatArray, NDArray[np.int64], FloatArray]:
-        """Shortened lines that were looked at, c ascending, with what `_cutting_parts` has of them."""
+        """Shortened lines that were looked at, c ascending, with what `_cutting_parts` has of them.
+
+        Where the cut begins, and where nothing is left, another part of the shaper may have taken over before the next
+        of the lines looked at: one right beside it tells.
+        """
+        near = _BESIDE * self.generated_sweep
         affected = self._cut.lines[self._cut.shortened & (self._cut.lines > self._cut.exit)]
-        return affected, *self._cutting_parts(affected)
+        beside = [c + way * near for c, way in self._cut_begins if c + way * near > self._cut.exit]
+        if affected.size and self._cut.exit > self._generated_exit:
+            beside.append(self._cut.exit + near)
+        lines = np.unique(np.append(affected, beside)) if affected.size else affected
+        return lines, *self._cutting_parts(lines)
 
     @cached_property
     def _cut_corners(self) -> tuple[float, ...]:

@@ -26,7 +26,7 @@ from facegear.floquet.orbits import Orbit
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, named
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics.torsional import Torsional
-from facegear.support.parameters import designed, keep, one_of, positive, within
+from facegear.support.parameters import designed, finite, keep, one_of, within
 from facegear.support.types import FloatArray
 
 BackFlank = Literal["reversed", "printed"]
@@ -56,8 +56,9 @@ class Backlash:
         Constant torque of the load against the rotation of the output [N m], greater than 0: without it nothing closes
         the gap.
     gap : float
-        Backlash along the line of action [m], from 0 to a module. With 0 flanks never part and the system is linear:
-        chapter 7's, under the torque.
+        Backlash along the line of action [m], from 0 to a module. With 0 the flanks are one: they pull as well as push,
+        the back flanks' own path plays no part, and the system is the linear one of chapter 7 under the torque. That is
+        not the limit of small gaps wherever the teeth would pull.
     transmission_error : PiecewiseChebyshev, optional
         Static transmission error of the forward flanks against t/T0 [m].
     back_flank : {"reversed", "printed"}
@@ -91,7 +92,12 @@ class Backlash:
     def __post_init__(self) -> None:
         if not isinstance(self.torsional, Torsional):
             raise TypeError(f"torsional must be a Torsional, got {named(self.torsional)}")
-        torque = positive("torque", self.torque, "N m, which presses the flanks together and closes the gap")
+        torque = finite("torque", self.torque, "N m")
+        if torque <= 0.0:
+            raise ValueError(
+                "torque must be greater than 0 N m, or nothing presses the flanks together and closes the gap, got "
+                f"{self.torque!r} N m"
+            )
         keep(self, torque=torque, gap=within("gap", self.gap, 0.0, self.torsional.drive.module, "m"))
         error = self.transmission_error
         if error is not None and not isinstance(error, PiecewiseChebyshev):

@@ -81,6 +81,14 @@ def disk_modes(body: Body) -> tuple[DiskMode, ...]:
     )
 
 
+def mirror_signs(body: Body) -> FloatArray:
+    """Signs that a reflection θ → −θ gives the coordinates, (n,): −1 for sine waves.
+
+    A matrix of the disk becomes that of the reflected one by these from both sides.
+    """
+    return np.array([-1.0 if mode.wave == "sin" else 1.0 for mode in disk_modes(body)])
+
+
 def disk_coordinates(body: Body, part: str = "face gear") -> tuple[Coordinate, ...]:
     """Generalised coordinates of the disk, one for each of :func:`disk_modes`.
 

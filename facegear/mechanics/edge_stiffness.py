@@ -16,7 +16,7 @@ import numpy as np
 
 from facegear.floquet.series import ChebyshevSeries
 from facegear.geometry.drive import Drive
-from facegear.mechanics.disk import unit_shape
+from facegear.mechanics.disk import mirror_signs, unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
 from facegear.mechanics.plate import Body, plate_quadrature
 from facegear.mechanics.spread_force import RIM_POINT, Spread, pressed_stiffness, require_spread
@@ -312,17 +312,19 @@ class DrivingForce:
         angles : sequence of float
             Of the pinions, in the sense in which the disk turns [rad].
         senses : sequence of int, optional
-            1 where a pinion drives the disk, -1 where the disk drives it. Default: all drive.
+            1 where a pinion drives the disk, -1 where the disk drives it, by the other flanks of the teeth: the force
+            and its places are then the mirror image. Default: all drive.
 
         Returns
         -------
         ndarray, shape (n, n)
         """
-        places = tuple(zip(angles, senses or (1,) * len(angles), strict=True))
-        ways = {way: tuple(angle for angle, own in places if own == way) for way in (1, -1)}
-        units = [
-            way * unit_stiffness(body, speed, self.harmonics, self.following, here, self.spread)
-            for way, here in ways.items()
-            if here
-        ]
-        return np.asarray(self.newtons(body.drive) * sum(units))
+        ways = senses or (1,) * len(angles)
+        driving = tuple(angle for angle, way in zip(angles, ways, strict=True) if way > 0)
+        driven = tuple(-angle for angle, way in zip(angles, ways, strict=True) if way < 0)
+        signs, found = mirror_signs(body), np.zeros((1, 1))
+        for here, image in ((driving, np.ones((1, 1))), (driven, np.outer(signs, signs))):
+            if here:
+                unit = unit_stiffness(body, speed, self.harmonics, self.following, here, self.spread)
+                found = found + image * unit
+        return np.asarray(self.newtons(body.drive) * found)

@@ -32,7 +32,7 @@ from facegear.mechanics.disk import (
     REFERENCE_SPEED,
     disk_coordinates,
     disk_matrices,
-    disk_modes,
+    mirror_signs,
     modal_mass,
     reference_stiffness,
     unit_shape,
@@ -103,8 +103,7 @@ def rotated(body: Body, shape: PiecewiseChebyshev, angle: float) -> PiecewiseChe
 
 def mirrored(body: Body, shape: PiecewiseChebyshev) -> PiecewiseChebyshev:
     """Shape vector at the opposite angle, φ(r_c, -θ_c) from φ(r_c, θ_c)."""
-    signs = np.array([-1.0 if mode.wave == "sin" else 1.0 for mode in disk_modes(body)])
-    return PiecewiseChebyshev(shape.breakpoints, shape.coefficients * signs)
+    return PiecewiseChebyshev(shape.breakpoints, shape.coefficients * mirror_signs(body))
 
 
 class Driving(NamedTuple):

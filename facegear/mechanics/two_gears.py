@@ -2,9 +2,10 @@
 
 Both gears mesh with every pinion, from below and from above. Turned by half a turn about the axis of a pinion, the mesh
 below is the mesh above: the upper gear turns the other way, its contact runs along the mirrored path at the same
-instants, and half a turn is N1/2 teeth of the pinion. A pinion stands between the gears only where its teeth fit into
-both: from one pinion to another the lower gear turns its mesh by θ/θ_N periods and the upper one by −θ/θ_N, so that
-angles differ by whole halves of the angular pitch θ_N.
+instants, and half a turn is N1/2 teeth of the pinion. Both gears are on one axis, square to those of the pinions: at
+another shaft angle the upper gear would be one of another kind. A pinion stands between the gears only where its teeth
+fit into both: from one pinion to another the lower gear turns its mesh by θ/θ_N periods and the upper one by −θ/θ_N, so
+that angles differ by whole halves of the angular pitch θ_N.
 
 A pinion that drives both gears is an *input*. An *idler* takes torque from the upper gear and gives it to the lower: on
 the upper gear it presses with the other flanks of its teeth, whose contact is mirrored and runs backwards
@@ -13,6 +14,7 @@ the upper gear it presses with the other flanks of its teeth, whose contact is m
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -27,7 +29,7 @@ from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import mesh_period
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.disk import disk_coordinates, disk_matrices, modal_mass, unit_shape
+from facegear.mechanics.disk import disk_coordinates, disk_matrices, mirror_signs, modal_mass, unit_shape
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import RadialModes
 from facegear.mechanics.transverse import Driving, PinionsOnDisk
@@ -109,6 +111,12 @@ class TwoGears:
                 raise ValueError(f"gear.{name} must be None between two gears, got {value!r}")
         if self.gear.clocking != 0.0:
             raise ValueError(f"gear.clocking must be 0 between two gears, got {self.gear.clocking!r}")
+        shaft = self.gear.body.drive.shaft_angle
+        if abs(shaft - math.pi / 2.0) > _FITS:
+            raise ValueError(
+                "gear.body.drive.shaft_angle must be a right angle, or two gears on one axis are not alike, got "
+                f"{shaft!r} rad"
+            )
         if self.roles is not None:
             if not isinstance(self.roles, list | tuple) or len(self.roles) != len(self.gear.pinion_angles):
                 raise ValueError(
@@ -207,11 +215,10 @@ class TwoGears:
         if force is None or force.power == 0.0:
             return 0.0, 0.0
         below, above = self.driving
-        # At the angles of the lower gear what pushes the upper one on is a force the other way round.
-        return (
-            force.stiffness(gear.body, speed, *below),
-            -force.stiffness(gear.body, speed, below.angles, above.senses),
-        )
+        signs = mirror_signs(gear.body)
+        # The upper gear is seen as it turns: in the coordinates of the lower one that is the mirror image.
+        mirrored = np.outer(signs, signs) * force.stiffness(gear.body, speed, *above)
+        return force.stiffness(gear.body, speed, *below), mirrored
 
 
 class _Mesh(NamedTuple):

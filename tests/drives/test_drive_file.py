@@ -346,6 +346,11 @@ class TestTwoGears:
             ),
             ("  roles: [input, idler]", "  {}", "second_gear.roles is missing"),
             (
+                "module_mm: 3.175",
+                "module_mm: 3.175\n  shaft_angle_deg: 80",
+                "gears.shaft_angle_deg must be 90° beside second_gear, .*got 80°",
+            ),
+            (
                 "[0, 90]",
                 "[0, 91]",
                 r"pinions.angles_deg\[1\] must differ from the first by a whole number of halves of the angular pitch, "

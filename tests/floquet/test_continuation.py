@@ -1,9 +1,12 @@
 """Families of periodic motions: folds against a closed form, ends, and what they say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
+from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.contact_panels import Panels
 from facegear.floquet.continuation import Following, Special, doubled, followed, orbits_at
 from facegear.floquet.multipliers import multipliers
@@ -155,6 +158,25 @@ def test_ends_where_the_motion_has_grown():
     assert "the motion is 1.2 times as large" in branch.ended
 
 
+def test_what_was_found_is_kept_where_loads_vanish():
+    """Without a gap there is no back flank: the family ends before that, with a word, and not all of it is lost."""
+
+    def gapped(gap):
+        whole = gear_pair(1.5, gap=gap)
+        if gap > 0.5:
+            return whole
+        return ClearanceSystem(replace(whole.system, loads=whole.system.loads[:1]), (1,), (gap,))
+
+    branch = followed(gapped, 1.0, periodic_orbit(gapped(1.0)), 0.2, 1.5, direction=-1.0)
+    assert branch.parameters[-1] == pytest.approx(0.5, abs=0.01)
+    assert "1 coordinates and 1 loads" in branch.ended
+
+
+def test_a_family_that_begins_at_the_end_of_its_range_ends_there():
+    branch = followed(gear_pair, 1.5, ORBIT, 0.4, 1.5)
+    assert (len(branch.orbits), branch.ended) == (1, "at 1.5, the end of the range")
+
+
 ORBIT = periodic_orbit(gear_pair(1.5))
 
 
@@ -169,6 +191,11 @@ ORBIT = periodic_orbit(gear_pair(1.5))
         (lambda: followed(gear_pair, 1.5, 3.0, 0.4, 1.5), TypeError, "orbit must be an Orbit"),
         (lambda: followed(gear_pair, 1.5, ORBIT, 1.5, 0.4), ValueError, "low must be less than high"),
         (lambda: followed(gear_pair, 1.6, ORBIT, 0.4, 1.5), ValueError, "parameter must lie in"),
+        (
+            lambda: followed(gear_pair, 0.7, ORBIT, 0.4, 1.5),
+            ValueError,
+            r"orbit must be a motion of systems\(0.7\)",
+        ),
         (
             lambda: followed(lambda w: meshing().system, 1.0, ORBIT, 0.4, 1.5),
             TypeError,

@@ -339,7 +339,26 @@ LINEAR = meshing().system
         (lambda: Panels(nodes=3), ValueError, "nodes must be"),
         (lambda: Panels(angle=0.0), ValueError, "angle must lie in"),
         (lambda: settled(meshing(), np.zeros(4), 3), ValueError, r"states must have shape \(m, 4\)"),
-        (lambda: settled(meshing(), np.zeros((1, 4)), 3, 0), ValueError, "kept must be at least 1"),
+        (
+            lambda: settled(meshing(), np.zeros((1, 4)), 3, 0),
+            ValueError,
+            "kept must be at least 1",
+        ),
+        (
+            lambda: settled(meshing(), np.zeros((1, 4)), 3, 9),
+            ValueError,
+            "kept must be an integer from 1 to 3",
+        ),
+        (
+            lambda: periodic_orbit(meshing(), guess=periodic_orbit(gear_pair(1.5))),
+            ValueError,
+            "guess must be an orbit of a system with 2 coordinates and 3 loads, got one of 1 and 2",
+        ),
+        (
+            lambda: ClearanceSystem(replace(gear_pair(1.0).system, loads=()), (), ()),
+            ValueError,
+            "system must have at least one load",
+        ),
     ],
 )
 def test_bad_input_names_the_parameter(call, error, message):
@@ -352,3 +371,16 @@ def test_nothing_closes_the_gap():
     free = gear_pair(0.6, mean=0.0, amplitude=0.0, ratio=0.0)
     with pytest.raises(ArithmeticError, match="too small to close the gap"):
         periodic_orbit(free, guess=[0.2, 0.0])
+
+
+def test_contacts_too_stiff_to_resolve_are_told_at_once():
+    stiff = gear_pair(1.0).system.replace_loads(stiffness=1e8)
+    with pytest.raises(ArithmeticError, match="more than 5000: contacts are too stiff to resolve"):
+        periodic_orbit(ClearanceSystem(stiff, (1, -1), (1.0, 1.0)))
+
+
+def test_a_motion_without_contact_on_the_way_is_no_rigid_body():
+    """Stiff stops under a large force: the steps come to a flight between them, which nothing brings back."""
+    hard = gear_pair(1.0, amplitude=0.5).system.replace_loads(stiffness=1e4, damping=1.0)
+    with pytest.raises(ArithmeticError, match=r"came to contacts that hold nothing, .* after \d+ steps"):
+        periodic_orbit(ClearanceSystem(hard, (1, -1), (1.0, 1.0)))

@@ -7,6 +7,8 @@ import pytest
 
 from facegear import Drive
 from facegear.geometry.drive import SHAPER_OVERHANG
+from facegear.geometry.kinematics import ContactPath
+from facegear.mechanics.contact import Contact
 from tests.independent.shaper_envelope import shaper_of
 
 
@@ -192,3 +194,21 @@ def test_up_to_a_right_angle_lines_are_as_generated():
 def test_roll_off_the_profile_is_refused():
     with pytest.raises(ValueError, match=r"roll must lie between 0 and the shaper's tip at .* got 2"):
         NAMED[0].usable_radii([0.1, 2.0])
+
+
+@pytest.mark.parametrize(
+    ("teeth", "degrees"),
+    [((36, 100), 96.0), ((36, 100), 97.5), ((36, 100), 99.5), ((28, 64), 95.0), ((24, 64), 95.0)],
+)
+def test_a_part_of_the_shaper_that_cuts_few_lines_is_seen(teeth, degrees):
+    """It takes over from another one right after the cut begins, between two of the lines that are looked at."""
+    drive = Drive(*teeth, 4e-3, shaft_angle=math.radians(degrees))
+    (corner,) = drive.contact_region._cut_corners
+    assert any(abs(corner - kink) < 1e-12 for kink in drive.contact_region.kinks)
+    # A missed corner is a kink inside a piece, which no series follows.
+    [place] = Contact().places(drive)
+    fitted = place.shape(lambda radius, angle: np.stack([radius, angle], axis=-1))
+    x = np.linspace(0.0, 1.0, 2001)[:-1]
+    centroid = ContactPath(drive, drive.contact_ratio).centroid(x)
+    expected = np.stack([centroid.radius / drive.outer_radius, centroid.angle], axis=-1)
+    np.testing.assert_allclose(fitted(x), expected, rtol=1e-9, atol=1e-12)

@@ -209,7 +209,7 @@ def test_at_rest_the_deformation_carries_the_torque():
         (
             lambda: replace(MODEL, torque=0.0),
             ValueError,
-            "torque must be greater than 0 in N m, which presses",
+            "torque must be greater than 0 N m, or nothing presses",
         ),
         (lambda: replace(MODEL, gap=-1e-5), ValueError, "gap must lie in"),
         (lambda: replace(MODEL, gap=0.1), ValueError, "wrong by a factor of 1000"),

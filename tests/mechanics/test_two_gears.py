@@ -12,8 +12,9 @@ from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.geometry.kinematics import ContactPath, mesh_period
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.disk import disk_matrices
+from facegear.mechanics.disk import disk_matrices, mirror_signs
 from facegear.mechanics.mesh_oscillator import FOLLOWED, MeshOscillator
+from facegear.mechanics.spread_force import ContactPoints, FaceStrip, PressedPoints, Spread, ToothPatches
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
 from tests.independent.complex_galerkin import ComplexDisk, Pinion, Spring
@@ -212,6 +213,30 @@ def spring(path, pair, phase, driving, upright, sense, angle, number, disk):
     return Spring(Pinion(position, [0.0, *sorted(instants)]), weight, number, disk)
 
 
+@dataclass(frozen=True)
+class Beside(Spread):
+    """One point beside the pinion's axis."""
+
+    def points(self, drive):
+        return PressedPoints(np.array([0.95]), np.array([0.05]), np.ones(1))
+
+
+@pytest.mark.parametrize("spread", [Beside(), ToothPatches(ContactPoints(Contact()), FaceStrip())])
+def test_places_of_forces_are_mirrored_too(spread):
+    """A force that presses beside the middle of the mesh does so on the other side above, and on driven flanks."""
+    force = replace(FORCE, spread=spread)
+    assert distance(TwoGears(gear((0, 31), force=force)), TwoGears(gear((0, -31), force=force))) < 1e-10
+    body = gear().body
+    signs = mirror_signs(body)
+    driven, driving = force.stiffness(body, SPEED, (0.3,), (-1,)), force.stiffness(body, SPEED, (-0.3,))
+    np.testing.assert_allclose(driven, np.outer(signs, signs) * driving, rtol=1e-12)
+    # That is not the force the other way round, which it is at a point on the axis.
+    reverse = -force.stiffness(body, SPEED, (0.3,))
+    assert np.abs(driven - reverse).max() > 1e-3 * np.abs(driven).max()
+    point, back = (FORCE.stiffness(body, SPEED, (0.3,), (way,)) for way in (1, -1))
+    np.testing.assert_allclose(back, -point, rtol=0, atol=1e-9 * np.abs(point).max())
+
+
 def test_coordinates_say_which_gear_and_which_pinion():
     names = [coordinate.name for coordinate in TwoGears(gear((0, 31))).coordinates]
     assert len(set(names)) == len(names) == 12
@@ -240,6 +265,10 @@ def test_maps_and_tongues_take_it_like_any_model():
             r"gear.sides must be None between two gears, got \(1, 1\)",
         ),
         (lambda: TwoGears(gear((0, 31), phases=(0.0, 0.1))), "gear.phases must be None"),
+        (
+            lambda: TwoGears(gear(drive=replace(DRIVE, shaft_angle=1.4))),
+            r"gear.body.drive.shaft_angle must be a right angle.*got 1.4 rad",
+        ),
         (lambda: TwoGears(gear(clocking=0.5)), "gear.clocking must be 0 between two gears, got 0.5"),
         (
             lambda: TwoGears(gear((0, 31)), roles=("input",)),
