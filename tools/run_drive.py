@@ -2,7 +2,8 @@
 
 Checks the file, executes `notebooks/your_drive.ipynb` for it and leaves the report, as a notebook and as a page that
 any browser shows, in a folder together with the tables, arrays and meshes that it writes. Without a folder that is
-`my_drive_results` beside the file.
+`my_drive_results` beside the file. Each cell that starts is a line on standard output, `cell 7 of 24: The drive`; the
+last line says where the report is.
 """
 
 import html
@@ -43,10 +44,19 @@ def make_report(file: Path, folder: Path) -> int:
 
     from tools.run_notebook import NotebookFailedError, execute
 
+    cells = sections(nbformat.read(NOTEBOOK, as_version=4))
+
+    def show(done: int) -> None:
+        """Say which cell starts after so many."""
+        if done < len(cells):
+            sys.stdout.write(f"cell {done + 1} of {len(cells)}: {cells[done]}\n")
+            sys.stdout.flush()
+
+    show(0)
     try:
         # The book's own example stops earlier, to be built in minutes.
         parameters = {"drive_file": str(file), "output_directory": str(folder), "most_steps": MOST_STEPS}
-        execute(NOTEBOOK, folder / "report.ipynb", folder / "failed", parameters=parameters)
+        execute(NOTEBOOK, folder / "report.ipynb", folder / "failed", parameters=parameters, on_cell=show)
     except NotebookFailedError as problem:
         sys.stderr.write(f"{problem}\n")
         return 1
@@ -55,6 +65,20 @@ def make_report(file: Path, folder: Path) -> int:
     (folder / "failed").rmdir()
     sys.stdout.write(f"The report: {(folder / 'report.html').as_uri()}\n")
     return 0
+
+
+def sections(notebook: NotebookNode) -> list[str]:
+    """Return the heading above each code cell that holds something."""
+    heading, found = "", []
+    for cell in notebook.cells:
+        if cell.cell_type == "code" and cell.source.strip():
+            found.append(heading)
+        elif cell.cell_type == "markdown":
+            heading = next(
+                (line.lstrip("# ") for line in reversed(cell.source.splitlines()) if line.startswith("#")),
+                heading,
+            )
+    return found
 
 
 def page_of(notebook: NotebookNode) -> str:

@@ -24,6 +24,8 @@ LONGEST_MESSAGE = 400
 # Nobody can turn a control while papermill runs, nor on the page that comes of it: a notebook that has live
 # controls shows a picture of them instead.
 WITHOUT_A_READER = {"live_controls": False}
+# A kernel on this machine warns at every start that what it hears and says is not encrypted.
+QUIET_KERNEL = ["--IPKernelApp.log_level=ERROR"]
 INJECTED = "injected-parameters"  # papermill's tag of the cell it adds
 
 
@@ -110,6 +112,7 @@ def execute(
             cwd=notebook.parent,
             progress_bar=False,
             on_cell_executed=count,
+            extra_arguments=QUIET_KERNEL,
         )
     except PapermillExecutionError as problem:
         unfinished.replace(kept)

@@ -31,7 +31,7 @@ from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
 from facegear.mechanics.plate import Body
-from facegear.mechanics.spread_force import RIM_POINT, Spread
+from facegear.mechanics.spread_force import RIM_POINT, Spread, points_on
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import ascending, nonnegative, within
 from facegear.support.types import FloatArray
@@ -67,7 +67,7 @@ def mode_critical_powers(body: Body, pinion_speed: float, spread: Spread = RIM_P
     TypeError, ValueError
         If `pinion_speed` is not a number greater than 0.
     """
-    points = spread.points(body.drive)
+    points = points_on(body, spread)
     squares = np.stack([modes.continued(points.radius) ** 2 for modes in body.modes], axis=1)
     tilt = squares @ (points.share / points.radius**2) / body.outer_radius**2
     diameters = np.arange(body.nodal_diameters + 1)

@@ -46,6 +46,8 @@ T = TypeVar("T")
 _FACTORS = (1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9)
 
 _INCH = 25.4e-3
+# What models call following the contact where they refuse teeth that do not allow it.
+_TOTAL_RATE = "rate = 'total'"
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*", re.ASCII)
 _WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+([eE][-+]?\d+)?)\s*[^\d\s.,:eE-].*", re.ASCII)
 
@@ -169,7 +171,7 @@ class _Found:
     name : str
         Name of the drive.
     values : dict
-        Values in SI, by section and SI name of the key; None for a gearbox that is not there.
+        Values in SI, by section and SI name of the key; None for a section that is not there.
     keys : dict
         The keys that gave them, by section and SI name.
     """
@@ -202,7 +204,7 @@ def _checked(content: Any) -> _Found:
         if name not in content:
             if section.required:
                 raise ValueError(f"{name} is missing: a section with the keys {', '.join(keys)}")
-            if any(key.default is None for key in section.keys):
+            if not section.assumed:
                 values[name] = None
                 continue
         entries = content.get(name, {})
@@ -262,12 +264,12 @@ def _value(path: str, key: Key, value: Any) -> Any:
             raise ValueError(f"{path} must be {key.valid}, got {_shown(value)}")
         return value
     if key.kind == "choices":
-        if not isinstance(value, list | tuple) or not 1 <= len(value) <= MOST_PINIONS:
+        if not isinstance(value, list | tuple) or not key.fewest <= len(value) <= MOST_PINIONS:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
         for i, entry in enumerate(value):
-            if entry not in key.choices:
-                raise ValueError(f"{path}[{i}] must be {' or '.join(key.choices)}, got {_shown(entry)}")
-        return tuple(value)
+            if isinstance(entry, bool) or entry not in key.choices:
+                raise ValueError(f"{path}[{i}] must be {key.valid_entry}, got {_shown(entry)}")
+        return tuple(key.choices[key.choices.index(entry)] for entry in value)
     if key.kind == "numbers":
         if not isinstance(value, list | tuple) or not key.fewest <= len(value) <= MOST_PINIONS:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
@@ -281,7 +283,7 @@ def _value(path: str, key: Key, value: Any) -> Any:
 
 def _number(path: str, key: Key, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
+        raise TypeError(f"{path} must be {key.valid_entry}, got {_shown(value)}{_text_hint(value)}")
     if key.or_zero and value == 0:
         return 0.0
     return within(path, value, key.lowest, key.highest, key.unit, _unit_hint(path, key, value))
@@ -300,6 +302,8 @@ def _text_hint(value: Any) -> str:
 
 def _unit_hint(path: str, key: Key, value: float) -> str:
     """Guess at a wrong unit: the value that would be valid."""
+    if key.hint:
+        return key.hint
     hints = [f"a ratio, not {key.no_unit}?"] if key.no_unit and value > key.highest else []
     factors = (key.to_si(1.0) ** -1, *_FACTORS) if key.unit else (1e-3,) if key.no_unit else ()
     for factor in factors:
@@ -333,8 +337,10 @@ def _built(found: _Found) -> DriveFile:
     gears = values["gears"] | {"shaper_teeth": values["gears"]["shaper_teeth"] or None}
     drive = _by_model(found, "gears", lambda: Drive(**gears))
     material = _by_model(found, "material", lambda: Material(**values["material"]))
+    roles = _roles(found, drive)
+    faces = _faces(values["teeth"], len(values["pinions"]["angles"]))
     _check_bore(drive, values["body"]["bore_radius"])
-    _check_angles(drive, values["pinions"]["angles"], values["teeth"])
+    _check_angles(drive, values["pinions"]["angles"], faces)
     body = _by_model(found, "body", lambda: Body(drive, material=material, **values["body"]))
     pinions = dict(values["pinions"])
     angles, asked = pinions.pop("angles"), pinions.pop("contact_ratio")
@@ -342,7 +348,7 @@ def _built(found: _Found) -> DriveFile:
     contacts = _contacts(found, drive, material, stiffness, asked)
     contact = next(iter(contacts.values()))
     load = _by_model(found, "pinions", lambda: MeshLoad(**pinions))
-    teeth, roles = None, _roles(found, drive)
+    teeth = None
     transverse: FaceGears
     if values["teeth"] is None:
         transverse = _by_model(found, "pinions", lambda: Transverse(body, load, angles, contact))
@@ -352,13 +358,13 @@ def _built(found: _Found) -> DriveFile:
             found, "teeth", lambda: {name: teeth.contact(own, drive) for name, own in contacts.items()}
         )
         build = partial(teeth.under, body, load, angles, next(iter(contacts.values())))
-        gear = _by_model(found, "teeth", build)
+        gear = _following(found, "teeth", build)
         transverse = gear if roles is None else _by_model(found, "second_gear", lambda: TwoGears(gear, roles))
     _by_model(found, "material", lambda: _by_model(found, "body", lambda: transverse.gear.bearing_stiffness))
     requirements = _requirements(found, body)
     torsional, play = None, None
     if (gearbox := values["gearbox"]) is not None:
-        torsional = _by_model(
+        torsional = _following(
             found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive), material)
         )
         torque = requirements.power / requirements.pinion_speed * drive.gear_ratio
@@ -366,11 +372,18 @@ def _built(found: _Found) -> DriveFile:
     return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles, play)
 
 
-def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[float]:
+def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[int]:
     """Face of the gear that each pinion meshes with."""
-    sides = (teeth and teeth["sides"]) or (1.0,) * pinions
-    if len(sides) != pinions or not all(side in (1.0, -1.0) for side in sides):
-        raise ValueError(f"teeth.sides must list 1 or -1 for each of {pinions} pinions, got {list(sides)}")
+    sides = (teeth and teeth["sides"]) or (1,) * pinions
+    if len(sides) != pinions:
+        raise ValueError(
+            f"teeth.sides must list 1 or -1 for each pinion of pinions.angles_deg, {pinions} in all, got {list(sides)}"
+        )
+    if teeth and teeth["clocking"] and -1 not in sides:
+        raise ValueError(
+            "teeth.clocking must be 0 or left out where teeth.sides has no pinion on the back face (-1), got "
+            f"{teeth['clocking']:.6g}"
+        )
     return sides
 
 
@@ -412,15 +425,27 @@ def _teeth(found: _Found, drive: Drive, material: Material, stiffness: float | N
     values, gearbox = found.values["teeth"], found.values["gearbox"]
     if found.values["pinions"]["mass"] == 0.0:
         raise ValueError("pinions.mass must be greater than 0 for a pinion on flexible teeth to move, got 0")
-    if gearbox and gearbox["mesh_damping"] != values["mesh_damping"]:
+    damping = values["mesh_damping"]
+    if gearbox is None and damping == 0.0:
         raise ValueError(
-            f"teeth.tooth_damping_us must be that of gearbox, {found.shown('gearbox', 'mesh_damping')}, got "
-            f"{found.shown('teeth', 'mesh_damping')}"
+            "teeth.tooth_damping_us is missing, or 0: without a section gearbox, whose mesh damping it would be, it "
+            f"must be {found.keys['teeth']['mesh_damping'].valid.removeprefix('0, or ')}"
         )
+    if gearbox:
+        if gearbox["mesh_damping"] == 0.0:
+            raise ValueError(
+                "gearbox.mesh_damping_us must be greater than 0 beside a section teeth, whose springs have that "
+                "damping, got 0 µs"
+            )
+        if damping not in (0.0, gearbox["mesh_damping"]):
+            raise ValueError(
+                "teeth.tooth_damping_us must be left out, or be that of gearbox.mesh_damping_us, "
+                f"{found.shown('gearbox', 'mesh_damping')}, got {found.shown('teeth', 'mesh_damping')}"
+            )
+        damping = gearbox["mesh_damping"]
     if stiffness is None:
         stiffness = mesh_stiffness(drive, USUAL_CORRECTION, material)
-    sides = tuple(int(side) for side in values["sides"])
-    return FlexibleTeeth(stiffness, values["mesh_damping"], values["sharing"], sides, values["clocking"])
+    return FlexibleTeeth(stiffness, damping, values["sharing"], values["sides"], values["clocking"])
 
 
 def _pair_stiffness(found: _Found, drive: Drive, material: Material) -> float | None:
@@ -490,9 +515,9 @@ def _check_bore(drive: Drive, bore_radius: float) -> None:
         )
 
 
-def _check_angles(drive: Drive, angles: Sequence[float], teeth: dict[str, Any] | None) -> None:
+def _check_angles(drive: Drive, angles: Sequence[float], faces: Sequence[int]) -> None:
     """Check that no two pinions of a face are in each other's way, in the file's unit."""
-    least, faces = touching_angle(drive), _faces(teeth, len(angles))
+    least = touching_angle(drive)
     for i, angle in enumerate(angles):
         for j in range(i):
             apart = abs(math.remainder(angle - angles[j], 2 * math.pi))
@@ -530,6 +555,22 @@ def _by_model(found: _Found, section: str, build: Callable[[], T]) -> T:
         for quantity in found.keys.get(section, {}):
             text = re.sub(rf"(?<![\w.]){quantity}(?!\w)", found.key(section, quantity), text)
         raise ValueError(text if f"{section}." in text else f"{section}: {text}") from error
+
+
+def _following(found: _Found, section: str, build: Callable[[], T]) -> T:
+    """As `_by_model`, of a model that follows the moving contact; a file has no key for that."""
+
+    def told() -> T:
+        try:
+            return build()
+        except ValueError as error:
+            text = str(error)
+            if _TOTAL_RATE not in text:
+                raise
+            text = text.replace(_TOTAL_RATE, f"a section {section}, whose model follows the moving contact")
+            raise ValueError(re.sub(r"\b(?=(pinion|gear)_teeth\b)", "gears.", text)) from error
+
+    return _by_model(found, section, told)
 
 
 # --- what may have happened ---------------------------------------------------------------------------------------

@@ -56,7 +56,7 @@ class Key:
     meaning : str
         What it is, for the documentation.
     kind : {"number", "integer", "text", "choice", "numbers", "choices"}
-        "numbers" is a list of numbers, "choices" one of words.
+        "numbers" is a list of any numbers, "choices" one of certain words or numbers.
     unit : str
         Unit of the value in the file.
     lowest, highest : float
@@ -65,13 +65,15 @@ class Key:
         Whether 0 is valid although it lies outside the interval.
     default : object
         Value if the key is left out; None for a key that must be there.
-    choices : tuple of str
-        Valid words of a "choice" or of "choices".
+    choices : tuple of str or int
+        Valid words of a "choice"; valid entries of "choices".
     quantity : str
         Name of the package's own parameter, where it is not that of the key without its unit. Keys of a section with
         the same quantity say the same in different units: a file has exactly one of them.
     no_unit : str
         What a ratio without a unit is mistaken for.
+    hint : str
+        What is said of a value outside the interval, in place of a guess at its unit.
     """
 
     name: str
@@ -82,9 +84,10 @@ class Key:
     highest: float = math.inf
     or_zero: bool = False
     default: Any = None
-    choices: tuple[str, ...] = ()
+    choices: tuple[str | int, ...] = ()
     quantity: str = ""
     no_unit: str = ""
+    hint: str = ""
 
     @property
     def si_name(self) -> str:
@@ -107,16 +110,24 @@ class Key:
     @property
     def valid(self) -> str:
         """What is valid, in words."""
-        if self.kind == "choice":
-            return " or ".join(self.choices)
+        many = f"a list of {self.fewest} to {MOST_PINIONS}"
         if self.kind == "choices":
-            return f"a list of 1 to {MOST_PINIONS} words, each {' or '.join(self.choices)}"
+            what = "words" if isinstance(self.choices[0], str) else "numbers"
+            return f"{many} {what}, each {self.valid_entry}"
+        if self.kind == "numbers":
+            return f"{many} numbers, each {self.valid_entry.removeprefix('a number ')}"
+        return self.valid_entry
+
+    @property
+    def valid_entry(self) -> str:
+        """What is valid for one entry of a list, or for a key without a list."""
+        if self.choices:
+            return " or ".join(map(str, self.choices))
         if self.kind == "text":
             return f"text of 1 to {LONGEST_TEXT} characters"
         interval = f"{self.lowest:g} to {self.highest:g}{f' {self.unit}' if self.unit else ''}"
-        numbers = f"a list of {self.fewest} to {MOST_PINIONS} numbers, each"
-        what = {"integer": "a whole number", "numbers": numbers}
-        return f"{'0, or ' if self.or_zero else ''}{what.get(self.kind, 'a number')} from {interval}"
+        what = "a whole number" if self.kind == "integer" else "a number"
+        return f"{'0, or ' if self.or_zero else ''}{what} from {interval}"
 
 
 @dataclass(frozen=True)
@@ -130,11 +141,14 @@ class Section:
     keys : tuple of Key
     required : bool
         Whether a file must have it.
+    assumed : bool
+        Whether a file without it is taken to have it, with the values that keys have if they are left out.
     """
 
     meaning: str
     keys: tuple[Key, ...]
     required: bool = True
+    assumed: bool = False
 
     def quantities(self) -> Iterator[tuple[Key, ...]]:
         """Keys that say the same in different units, together; most stand alone."""
@@ -240,6 +254,7 @@ _MATERIAL = Section(
         ),
     ),
     required=False,
+    assumed=True,
 )
 _PINIONS = Section(
     "Pinions and their bearings, all alike, as the body feels them.",
@@ -343,7 +358,9 @@ _GEARBOX = Section(
 )
 
 _TEETH = Section(
-    "Teeth as springs between gear and pinions (chapter 8); without it they are rigid.",
+    "Teeth as springs between gear and pinions (chapter 8); without it they are rigid. The springs follow the contact, "
+    "whose lines must not end on the pinion's base circle: 22 teeth of the pinion are enough at a pressure angle of "
+    "25°, 34 at 20°; whether fewer are depends on the gear ratio, and a file with too few is refused.",
     (
         Key(
             "correction_factor",
@@ -358,11 +375,13 @@ _TEETH = Section(
         ),
         Key(
             "tooth_damping_us",
-            "$c_m/k_m$, mesh damping over mesh stiffness; that of `gearbox` if there is one",
+            "$c_m/k_m$, mesh damping over mesh stiffness: 0 for that of `gearbox`; without one it must be given",
             "number",
             "µs",
             1e-3,
             1e4,
+            or_zero=True,
+            default=0.0,
             quantity="mesh_damping",
         ),
         Key(
@@ -377,20 +396,20 @@ _TEETH = Section(
         Key(
             "sides",
             "face of the gear that each pinion meshes with, 1 for the front or -1 for the back; none for all the front",
-            "numbers",
-            "",
-            -1.0,
-            1.0,
+            "choices",
             default=(),
+            choices=(1, -1),
         ),
         Key(
             "clocking",
-            "phase by which the teeth of the back face are ahead of those of the front, in mesh periods",
+            "phase by which the teeth of the back face are ahead of those of the front, in mesh periods; it needs a "
+            "pinion on the back face",
             "number",
             "",
             -1.0,
             1.0,
             default=0.0,
+            hint="in mesh periods, not in degrees?",
         ),
     ),
     required=False,
@@ -476,7 +495,7 @@ def _key_schema(key: Key) -> dict[str, Any]:
         return told | {"enum": list(key.choices)}
     if key.kind == "choices":
         each = {"enum": list(key.choices)}
-        return told | {"type": "array", "minItems": 1, "maxItems": MOST_PINIONS, "items": each}
+        return told | {"type": "array", "minItems": key.fewest, "maxItems": MOST_PINIONS, "items": each}
     ends = {"minimum": key.lowest, "maximum": key.highest}
     if key.kind == "numbers":
         return told | {

@@ -123,8 +123,8 @@ def flutter(model: FaceGears, duty: Requirements) -> tuple[Row, ...]:
     tuple of Row
         Power of a pinion; critical power of each pinion, all pinions together, for forces that follow the rim and for
         those that keep their direction, the smallest of all gears and both ends of the speed range [kW]; the former
-        over the power of a pinion [-]; between two gears power is that of each mesh. Without viscous damping of the
-        disk any power flutters, and the critical one is 0.
+        over the power of a pinion [-]. Between two gears power is that of each mesh, and rows are named so. Without
+        viscous damping of the disk any power flutters, and the critical one is 0.
     """
     body = model.gear.body
     damped = body.material.viscous_loss_factor > 0.0
@@ -145,12 +145,13 @@ def flutter(model: FaceGears, duty: Requirements) -> tuple[Row, ...]:
             for driving in model.driving
         )
 
+    each = "mesh" if len(model.driving) > 1 else "pinion"
     follower, dead = (smallest("follower"), smallest("dead")) if damped else (0.0, 0.0)
     return (
-        Row("power of a pinion", 1e-3 * duty.power, "kW"),
-        Row("critical power of a pinion, disk alone, force follows the rim", 1e-3 * follower, "kW"),
-        Row("critical power of a pinion, disk alone, force keeps its direction", 1e-3 * dead, "kW"),
-        Row("critical power over power of a pinion, force follows the rim", follower / duty.power, "1"),
+        Row(f"power of a {each}", 1e-3 * duty.power, "kW"),
+        Row(f"critical power of a {each}, disk alone, force follows the rim", 1e-3 * follower, "kW"),
+        Row(f"critical power of a {each}, disk alone, force keeps its direction", 1e-3 * dead, "kW"),
+        Row(f"critical power over power of a {each}, force follows the rim", follower / duty.power, "1"),
     )
 
 

@@ -202,7 +202,7 @@ def _finding(case: Case) -> str:
     """Say at which speeds a case is unstable, by which mechanism, in which basis."""
     found = case.found
     last = found.steps[-1]
-    basis = f"{last.nodal_circles} nodal circles and {last.nodal_diameters} nodal diameters"
+    basis = f"{_counted(last.nodal_circles, 'nodal circle')} and {_counted(last.nodal_diameters, 'nodal diameter')}"
     if len(found.steps) == 1:
         sure = f"{basis}; no larger basis was tried"
     else:
@@ -218,6 +218,10 @@ def _finding(case: Case) -> str:
     else:
         cause = _resonances(found.tongues)
     return f"{case.name[0].upper()}{case.name[1:]}: {spoken}{cause} ({sure})."
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _speeds(found: Sequence[Tongue], speeds: tuple[float, float]) -> str:

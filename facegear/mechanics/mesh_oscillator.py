@@ -40,7 +40,7 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
 from facegear.mechanics.plate import RadialModes
 from facegear.mechanics.transverse import MOST_PERIODS, PinionsOnDisk, Transverse
-from facegear.support.parameters import designed, finite_array, keep, positive, within
+from facegear.support.parameters import designed, finite_array, keep, nonnegative, positive, within
 from facegear.support.types import FloatArray
 
 FOLLOWED = Contact(rate="total")
@@ -48,6 +48,8 @@ FOLLOWED = Contact(rate="total")
 
 # Angles [rad] and phases [mesh periods] closer than this are the same.
 _SAME = 1e-6
+# Damping of the mesh over its stiffness [s].
+_MOST_DAMPING = 0.01
 
 
 @dataclass(frozen=True)
@@ -123,11 +125,19 @@ class MeshOscillator(PinionsOnDisk):
                 "load.mass must be greater than 0 for a pinion to have a motion of its own, got 0.0"
             )
         keep(self, mesh_stiffness=positive("mesh_stiffness", self.mesh_stiffness, "N/m"))
-        damping = within("mesh_damping", self.mesh_damping, 0.0, 0.01, "s")
+        damping = nonnegative("mesh_damping", self.mesh_damping, "s")
         if damping == 0.0:
             raise ValueError(
                 "mesh_damping must be greater than 0 s, or what rings in stiff teeth never dies away and they do not "
                 f"become rigid ones, got {self.mesh_damping!r}"
+            )
+        if damping > _MOST_DAMPING:
+            microseconds = (
+                f" (µs? {1e-6 * damping:.6g} would be valid)" if 1e-6 * damping <= _MOST_DAMPING else ""
+            )
+            raise ValueError(
+                f"mesh_damping must be greater than 0 and at most {_MOST_DAMPING:g} s, got {self.mesh_damping!r} s"
+                f"{microseconds}"
             )
         keep(
             self,

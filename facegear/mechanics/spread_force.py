@@ -54,30 +54,75 @@ from facegear.mechanics.inplane import (
     spin_per_speed,
 )
 from facegear.mechanics.plate import Body
-from facegear.support.parameters import keep, nonnegative, within
+from facegear.support.parameters import finite_array, keep, nonnegative, within
 from facegear.support.types import ComplexArray, FloatArray
 
+# Largest r over the outer radius of a point: a tooth enters mesh beside the pinion's axis, and nearly equal numbers of
+# teeth put that 0.04 beyond the rim.
+_FURTHEST = 1.05
+# By how much the parts of the moment may miss 1 in sum.
+_ONE_MOMENT = 1e-9
 # Gauss nodes along the face, across a root and in each smooth piece of the mesh period: more change nothing.
 _ALONG, _ACROSS, _IN_PIECE = 12, 4, 16
 
 
-class PressedPoints(NamedTuple):
-    """Points at which the driving force of a pinion at angle 0 presses, m of them.
+@dataclass(frozen=True, eq=False)
+class PressedPoints:
+    """Points at which the driving force of a pinion at angle 0 presses, m of them, at least one.
 
-    Attributes
+    Parameters
     ----------
-    radius : ndarray, shape (m,)
-        r over the outer radius [-]. A tooth enters mesh beside the pinion's axis, some thousandths beyond 1: there the
-        disk is continued, as in :func:`facegear.mechanics.disk.unit_shape`.
-    angle : ndarray, shape (m,)
-        θ from the pinion's axis [rad].
-    share : ndarray, shape (m,)
-        Part ϖ of the moment [-]; their sum is 1.
+    radius : array_like, shape (m,)
+        r over the outer radius [-], greater than 0, on a body also no less than its bore ratio. A tooth enters mesh
+        beside the pinion's axis, some thousandths beyond 1: there the disk is continued, as in
+        :func:`facegear.mechanics.disk.unit_shape`.
+    angle : array_like, shape (m,)
+        θ from the pinion's axis [rad], less than a quarter of a turn.
+    share : array_like, shape (m,)
+        Part ϖ of the moment [-], each greater than 0; their sum is 1.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is no list of finite numbers, as long as the others, or outside its range; a radius in another
+        unit is named as such.
+
+    Examples
+    --------
+    >>> PressedPoints([0.9, 1.0], [0.0, 0.0], [0.4, 0.6]).radial
+    array([0., 0.])
     """
 
     radius: FloatArray
     angle: FloatArray
     share: FloatArray
+
+    def __post_init__(self) -> None:
+        columns = {name: finite_array(name, getattr(self, name)) for name in ("radius", "angle", "share")}
+        shapes = {name: column.shape for name, column in columns.items()}
+        if len(set(shapes.values())) > 1 or shapes["radius"] == (0,) or len(shapes["radius"]) != 1:
+            raise ValueError(
+                "radius, angle and share must be lists of one length, of at least one point, got the shapes "
+                f"{', '.join(map(str, shapes.values()))}"
+            )
+        radius, angle, share = columns.values()
+        if (wrong := (radius <= 0.0) | (radius > _FURTHEST)).any():
+            raise ValueError(
+                f"radius must be r over the outer radius, greater than 0 and at most {_FURTHEST:g}, got "
+                f"{radius[wrong][0]:.6g} (a ratio, not m or mm?)"
+            )
+        if (wrong := np.abs(angle) >= math.pi / 2).any():
+            raise ValueError(
+                "angle must be less than a quarter of a turn from the pinion's axis, "
+                f"{math.pi / 2:.4f} rad, got {angle[wrong][0]:.6g} rad (radians, not degrees?)"
+            )
+        if (wrong := share <= 0.0).any():
+            raise ValueError(f"share must be greater than 0 at each point, got {share[wrong][0]:.6g}")
+        if abs(share.sum() - 1.0) > _ONE_MOMENT:
+            raise ValueError(f"share must have the sum 1, of one moment, got {share.sum():.12g}")
+        for column in columns.values():
+            column.setflags(write=False)
+        keep(self, **columns)
 
     @property
     def tangential(self) -> FloatArray:
@@ -91,7 +136,10 @@ class PressedPoints(NamedTuple):
 
 
 class Spread(ABC):
-    """Where a driving force presses: a frozen dataclass with `points`."""
+    """Where a driving force presses: a frozen dataclass with `points`.
+
+    One of your own is such a class, and its points are :class:`PressedPoints`, which says what they must be.
+    """
 
     @abstractmethod
     def points(self, drive: Drive) -> PressedPoints:
@@ -205,7 +253,10 @@ class ContactPointsAt(Spread):
     def points(self, drive: Drive) -> PressedPoints:
         """Contact point of every load that there is."""
         self.contact.require(drive)
-        return _touching(self.contact, drive, np.array([self.fraction % 1.0]))
+        radius, angle, share = _touching(self.contact, drive, np.array([self.fraction % 1.0]))
+        # At the instant at which a pair enters mesh it may have no load yet.
+        loaded = share > 0.0
+        return PressedPoints(radius[loaded], angle[loaded], share[loaded])
 
 
 @dataclass(frozen=True)
@@ -247,12 +298,12 @@ class ContactPoints(Spread):
         pieces = zip(
             breakpoints[:, np.newaxis] + length * (nodes + 1.0) / 2, length * weights / 2, strict=True
         )
-        parts = [
-            points._replace(share=points.share * np.tile(weight, points.share.size // weight.size))
-            for instants, weight in pieces
-            for points in (_touching(self.contact, drive, instants),)
-        ]
-        return PressedPoints(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+        columns: list[list[FloatArray]] = [[], [], []]
+        for instants, weight in pieces:
+            radius, angle, share = _touching(self.contact, drive, instants)
+            for column, part in zip(columns, (radius, angle, share * weight), strict=True):
+                column.append(part.ravel())
+        return PressedPoints(*map(np.concatenate, columns))
 
 
 @dataclass(frozen=True)
@@ -290,7 +341,7 @@ class ToothPatches(Spread):
 
 
 def require_spread(name: str, value: object) -> None:
-    """Refuse what is no spread.
+    """Refuse what is no spread, or cannot be told from another one by its hash.
 
     Raises
     ------
@@ -299,6 +350,54 @@ def require_spread(name: str, value: object) -> None:
     """
     if not isinstance(value, Spread):
         raise TypeError(f"{name} must be a Spread such as FaceStrip(), got {value!r}")
+    try:
+        hash(value)
+    except TypeError as error:
+        raise TypeError(
+            f"{name} must be a Spread with a hash, a frozen dataclass whose fields are numbers or tuples, got "
+            f"{value!r} ({error})"
+        ) from None
+
+
+def points_on(body: Body, spread: Spread) -> PressedPoints:
+    """Points of a spread on a body.
+
+    Parameters
+    ----------
+    body : Body
+    spread : Spread
+
+    Returns
+    -------
+    PressedPoints
+
+    Raises
+    ------
+    TypeError
+        If the points of the spread are something else.
+    ValueError
+        If one lies inside the bore, or as :meth:`Spread.points`.
+
+    Examples
+    --------
+    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> points_on(body, RIM_POINT).radius
+    array([1.])
+    """
+    return _points_from(spread, body.drive, body.bore_ratio)
+
+
+def _points_from(spread: Spread, drive: Drive, bore_ratio: float) -> PressedPoints:
+    points = spread.points(drive)
+    name = f"{type(spread).__name__}.points"
+    if not isinstance(points, PressedPoints):
+        raise TypeError(f"{name} must return PressedPoints(radius, angle, share), got {points!r}")
+    if (least := points.radius.min()) < bore_ratio:
+        raise ValueError(
+            f"radius of {name} must be r over the outer radius, at least that of the bore, {bore_ratio:.6g}, got "
+            f"{least:.6g} (a ratio, not m or mm?)"
+        )
+    return points
 
 
 def _require_contact(value: object) -> None:
@@ -306,8 +405,10 @@ def _require_contact(value: object) -> None:
         raise TypeError(f"contact must be a Contact, got {value!r}")
 
 
-def _touching(contact: Contact, drive: Drive, instants: FloatArray) -> PressedPoints:
-    """Points of the loads at instants of one smooth piece of the period, load by load."""
+def _touching(
+    contact: Contact, drive: Drive, instants: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Radius, angle and share of each load at instants of one smooth piece of the period, (loads, instants)."""
     places = contact.placed(contact.places(drive), 0.0, 0.0)
     piece = int(np.searchsorted(places[0].position.breakpoints, instants[0], side="right")) - 1
     there = [place for place in places if place.in_contact[piece]]
@@ -316,7 +417,7 @@ def _touching(contact: Contact, drive: Drive, instants: FloatArray) -> PressedPo
         np.ones(instants.size) if place.weight is None else place.weight(instants)[:, 0] for place in there
     ]
     share = np.asarray(stiffness) / np.sum(stiffness, axis=0)
-    return PressedPoints(radius.ravel(), angle.ravel(), share.ravel())
+    return radius, angle, share
 
 
 def root_thickness(drive: Drive) -> float:
@@ -467,7 +568,7 @@ def _disk_grid(body: Body, harmonics: int) -> _DiskGrid:
 @lru_cache(maxsize=256)
 def _moments(spread: Spread, drive: Drive, bore_ratio: float, degree: int, harmonics: int) -> ComplexArray:
     """Sum of e^{ikθ} times tangential and radial force, in factors of values at the radii; (2, K + 1, radii)."""
-    points = spread.points(drive)
+    points = _points_from(spread, drive, bore_ratio)
     t, _ = collocation_points(degree)
     local = 1.0 - np.log(points.radius) / (math.log(bore_ratio) / 2)
     to_points = np.linalg.solve(chebyshev.chebvander(t, degree).T, chebyshev.chebvander(local, degree).T)

@@ -176,6 +176,32 @@ class TestFlexibleTeeth:
             found.torsional.gearbox.mesh_damping / found.torsional.gearbox.mesh_stiffness, rel=1e-12
         )
 
+    def test_damping_that_is_left_out_is_that_of_the_gearbox(self):
+        given = parse_drive(self.with_gearbox("50")).transverse
+        for teeth in ("teeth:\n  sharing: centroid\n", "teeth: {}\n", "teeth:\n  tooth_damping_us: 0\n"):
+            text = re.sub(r"teeth:\n  tooth_damping_us: 50\n", teeth, self.with_gearbox("50"))
+            assert parse_drive(text).transverse == given
+
+    def test_a_gearbox_without_mesh_damping_has_none_for_flexible_teeth(self):
+        for own in ("0", "10"):
+            text = self.with_gearbox(own).replace("mesh_damping_us: 50", "mesh_damping_us: 0")
+            told = refusal(text)
+            assert told.startswith("gearbox.mesh_damping_us must be greater than 0 beside a section teeth")
+
+    def test_too_few_teeth_are_told_in_the_words_of_the_file(self):
+        few = self.TEETH.replace("pinion_teeth: 26", "pinion_teeth: 18").replace(
+            "gear_teeth: 130", "gear_teeth: 90"
+        )
+        few = few.replace("bore_radius_mm: 50", "bore_radius_mm: 30")
+        told = refusal(few)
+        assert re.match(
+            r"teeth: gears.pinion_teeth = 18 is too few for a section teeth, whose model follows the moving contact "
+            r"\(gears.gear_teeth = 90, .* 22 pinion teeth are enough",
+            told,
+        )
+        assert "rate" not in told.replace("ratio", "")
+        assert parse_drive(few.split("\nteeth:")[0]).teeth is None
+
     @staticmethod
     def with_gearbox(damping, more=""):
         text = re.sub(r"mesh_damping_us: \S+", "mesh_damping_us: 50", GEARBOX)
@@ -190,15 +216,34 @@ class TestFlexibleTeeth:
             ),
             (
                 TEETH + "  sides: [1, 1]\n",
-                r"teeth.sides must list 1 or -1 for each of 1 pinions, got \[1.0, 1.0\]",
+                r"teeth.sides must list 1 or -1 for each pinion of pinions.angles_deg, 1 in all, got \[1, 1\]",
             ),
-            (TEETH + "  sides: [0.5]\n", r"teeth.sides must list 1 or -1 .*got \[0.5\]"),
+            (TEETH + "  sides: [0.5]\n", r"teeth.sides\[0\] must be 1 or -1, got 0.5"),
+            (TEETH + "  sides: [true]\n", r"teeth.sides\[0\] must be 1 or -1, got True"),
+            (TEETH + "  sides: [front]\n", r"teeth.sides\[0\] must be 1 or -1, got 'front'"),
+            (TEETH + "  sides: 1\n", "teeth.sides must be a list of 0 to 12 numbers, each 1 or -1, got 1"),
+            (
+                TEETH + "  clocking: 180\n",
+                r"clocking must lie in \[-1, 1\], got 180 \(in mesh periods, not in degrees\?\)$",
+            ),
+            (
+                TEETH + "  clocking: 0.5\n",
+                "teeth.clocking must be 0 or left out where teeth.sides has no pinion on the back .*got 0.5",
+            ),
+            (
+                TEETH + "  sides: [1]\n  clocking: 0.5\n",
+                "teeth.clocking must be 0 or left out where teeth.sides has no pinion on the back .*got 0.5",
+            ),
             (TEETH + "  clocking: 3\n", r"teeth.clocking must lie in \[-1, 1\], got 3"),
             (
                 TEETH.replace("mass: 1.0", "mass: 0"),
                 "pinions.mass must be greater than 0 for a pinion on flexible",
             ),
-            (CASE_1 + "\nteeth:\n  sharing: equal\n", "teeth.tooth_damping_us is missing"),
+            (
+                CASE_1 + "\nteeth:\n  sharing: equal\n",
+                "teeth.tooth_damping_us is missing, or 0: without a section gearbox, .* from 0.001 to 10000 µs",
+            ),
+            (CASE_1 + "\nteeth:\n  tooth_damping_us: 0\n", "teeth.tooth_damping_us is missing, or 0"),
             (
                 TEETH.replace("mass: 1.0", "mass: 1.0\n  angles_deg: [0, 0]"),
                 r"pinions.angles_deg\[1\] must differ from the other angles",
@@ -215,7 +260,8 @@ class TestFlexibleTeeth:
         ):
             parse_drive(self.with_gearbox("50", "  correction_factor: 0.4\n"))
         with pytest.raises(
-            DriveFileError, match=r"teeth.tooth_damping_us must be that of gearbox, 50 µs, got 40 µs"
+            DriveFileError,
+            match=r"teeth.tooth_damping_us must be left out, or be that of gearbox.mesh.*, 50 µs, got 40 µs",
         ):
             parse_drive(self.with_gearbox("40"))
 
@@ -400,6 +446,11 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
         ("mass: 1.0", "mass: 1.0\n  mass: 2", r"line \d+: pinions.mass is given twice"),
         ("mass: 1.0", "mass: [1.0]", r"pinions.mass must be 0, or a number .*got \[1.0\]"),
         ("mass: 1.0", "mass: 1.0\n  angles_deg: 0", r"pinions.angles_deg must be a list .*got 0"),
+        (
+            "mass: 1.0",
+            "mass: 1.0\n  angles_deg: ['0', '90']",
+            r"^pinions.angles_deg\[0\] must be a number from -360 to 360 °, got '0'$",
+        ),
         ("mass: 1.0", "mass: 1.0\n  angles_deg: [0, 400]", r"pinions.angles_deg\[1\] .*got 400 °"),
         (
             "mass: 1.0",

@@ -46,12 +46,14 @@ def test_examples_obey_the_schema(path):
         ("pinions", "angles_deg", []),
         ("pinions", "contact_ratio", "mine"),
         ("body", "thickness_ratio", "thick"),
+        ("teeth", "sides", [0.5]),
+        ("teeth", "sides", ["front"]),
         ("operation", "safety_factor", 0.5),
     ],
 )
 def test_schema_and_reader_refuse_the_same_mistakes(section, key, value, tmp_path):
     wrong = yaml.safe_load(CASE_1)
-    wrong[section][key] = value
+    wrong.setdefault(section, {})[key] = value
     assert not VALIDATOR.is_valid(wrong)
     path = tmp_path / "wrong.yaml"
     path.write_text(yaml.safe_dump(wrong), encoding="utf-8")

@@ -170,6 +170,13 @@ class TestWords:
             in finding
         )
 
+    def test_one_of_a_kind_is_one(self):
+        stable = case("Tregold", "follower")
+        small = replace(stable.found.steps[-1], nodal_circles=1, nodal_diameters=1)
+        found = replace(stable.found, steps=(*stable.found.steps[:-1], small))
+        finding, _ = self.said(replace(stable, found=found)).findings
+        assert "1 nodal circle and 1 nodal diameter;" in finding
+
     def test_what_has_not_settled_says_so(self):
         said = self.said(case("Tregold", "follower", *BAD, settled=False, moved=0.2))
         finding, _ = said.findings

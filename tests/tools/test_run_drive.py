@@ -11,10 +11,12 @@ from pathlib import Path
 import nbformat
 import pytest
 import yaml
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from facegear.drives.drive_file import read_drive_file
 from facegear.support.labelled import load
 from tests.drives.test_verdict import Reader
+from tools import run_drive
 
 ROOT = Path(__file__).resolve().parents[2]
 NOTEBOOK = ROOT / "notebooks" / "your_drive.ipynb"
@@ -90,6 +92,10 @@ def test_papermill_makes_the_report_in_any_folder(tmp_path, example):
         for cell in nbformat.read(tmp_path / "out.ipynb", as_version=4).cells
         for output in cell.get("outputs", [])
     ]
+    words = " ".join(str(form) for output in outputs for form in output.get("data", {}).values())
+    faces = bool(file.teeth and file.teeth.sides)
+    assert ("on the faces front, back of the gear" in words) == ("0.5 mesh periods ahead" in words) == faces
+    assert ("power of a mesh" in words) == (file.roles is not None) == ("power of a pinion" not in words)
     pictures = [output for output in outputs if "image/svg+xml" in output.get("data", {})]
     assert len(pictures) == 6 + (file.torsional is not None)
     assert not [output for output in outputs if output.output_type in ("error", "stream")]
@@ -111,7 +117,10 @@ def test_the_projects_command_leaves_a_page_beside_the_file(tmp_path):
     done = called([*COMMAND, "stable.yaml"], tmp_path)
     assert done.returncode == 0, done.stderr
     results = tmp_path / "stable_results"
-    assert (results / "report.html").as_uri() in done.stdout
+    *progress, last = done.stdout.splitlines()
+    assert [line.split(":")[0] for line in progress] == [f"cell {k} of 24" for k in range(1, 25)]
+    assert last == f"The report: {(results / 'report.html').as_uri()}"
+    assert "encryption" not in done.stderr
     page = (results / "report.html").read_text(encoding="utf-8")
     assert "for stability nothing has to change" in page
     assert "Stable at all speeds from 950 to 1000 rpm under the driving force of 20 kW a pinion" in page
@@ -163,6 +172,36 @@ def test_papermill_stops_at_a_mistake(tmp_path):
         "DriveFileError: wrong.yaml: gear = {} is no key of a drive file: did you mean gears?" in done.stderr
     )
     assert not list(tmp_path.glob("*_results"))
+
+
+def test_every_cell_that_starts_is_told_and_the_report_comes_last(tmp_path, monkeypatch, capfd):
+    """Minutes went by without a line, but for a warning of the kernel."""
+    parameters = new_code_cell(
+        "drive_file = output_directory = ''\nmost_steps = 1", metadata={"tags": ["parameters"]}
+    )
+    cells = [
+        new_markdown_cell("# A report"),
+        parameters,
+        new_code_cell(""),
+        new_code_cell("import sys\nprint('trouble', file=sys.__stderr__)"),
+        new_markdown_cell("Words.\n\n## Its end\n\nMore words."),
+        new_code_cell("2 + 3"),
+    ]
+    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    nbformat.write(new_notebook(cells=cells, metadata={"kernelspec": kernel}), tmp_path / "short.ipynb")
+    monkeypatch.setattr(run_drive, "NOTEBOOK", tmp_path / "short.ipynb")
+    assert run_drive.make_report(tmp_path / "my.yaml", tmp_path / "results") == 0
+    said, complaints = capfd.readouterr()
+    page = tmp_path / "results" / "report.html"
+    assert said.splitlines() == [
+        "cell 1 of 3: A report",
+        "cell 2 of 3: A report",
+        "cell 3 of 3: Its end",
+        f"The report: {page.as_uri()}",
+    ]
+    assert "trouble" in complaints
+    assert "encryption" not in complaints
+    assert ">5<" in page.read_text(encoding="utf-8").replace("\n", "")
 
 
 def test_how_to_call_it(tmp_path):
