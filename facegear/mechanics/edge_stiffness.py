@@ -19,7 +19,7 @@ from facegear.geometry.drive import Drive
 from facegear.mechanics.disk import mirror_signs, unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
 from facegear.mechanics.plate import Body, plate_quadrature
-from facegear.mechanics.spread_force import RIM_POINT, Spread, pressed_stiffness, require_spread
+from facegear.mechanics.spread_force import RIM_POINT, Spread, points_on, pressed_stiffness, require_spread
 from facegear.support.parameters import (
     designed,
     integer_at_least,
@@ -246,7 +246,7 @@ class DrivingForce:
         (:func:`complete_harmonics`).
     spread : Spread
         Where the force presses, with the moment that it has at the rim. Default: at one point of the rim, as printed;
-        :class:`facegear.mechanics.spread_force.FaceStrip` and its neighbours have it over the teeth.
+        `FaceStrip`, `ToothPatches` and `ContactPoints` of :mod:`facegear.mechanics.spread_force` have it over the teeth.
 
     Raises
     ------
@@ -289,7 +289,7 @@ class DrivingForce:
             If the mean shear stress round the bore, F_t R2/(2π b² h), passes a hundred times Young's modulus, or the
             teeth of the body's drive have no such spread.
         """
-        self.spread.points(body.drive)
+        points_on(body, self.spread)
         force, bore = self.newtons(body.drive), 2.0 * math.pi * body.bore_radius**2 * body.thickness
         stress, most = force * body.outer_radius / bore, _MOST_SHEAR * body.material.youngs_modulus
         if stress > most:
