@@ -246,7 +246,7 @@ class DrivingForce:
         (:func:`complete_harmonics`).
     spread : Spread
         Where the force presses, with the moment that it has at the rim. Default: at one point of the rim, as printed;
-        `FaceStrip`, `ToothPatches` and `ContactPoints` of :mod:`facegear.mechanics.spread_force` have it over the teeth.
+        `FaceStrip`, `ToothPatches`, `ContactPoints` of :mod:`facegear.mechanics.spread_force` have it over the teeth.
 
     Raises
     ------
