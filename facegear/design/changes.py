@@ -100,14 +100,15 @@ def _changes(part: Any, path: tuple[str, ...]) -> Iterator[Change]:
             for number in range(1, len(value)):
                 yield Change(f"{words} {number + 1}", partial(_moved, path=here, number=number, step=step))
         elif words is not None and value:
-            yield Change(words, partial(_scaled, path=here))
+            yield Change(words, partial(scaled, path=here))
 
 
 def _at(model: Any, path: tuple[str, ...]) -> Any:
     return attrgetter(".".join(path))(model)
 
 
-def _scaled(model: Any, change: float, path: tuple[str, ...]) -> Any:
+def scaled(model: Any, change: float, path: tuple[str, ...]) -> Any:
+    """Return a model with the number at the end of a path of fields changed by a part of itself."""
     return replace_at(model, path, _at(model, path) * (1 + change))
 
 

@@ -78,16 +78,13 @@ def _at_rest(play: Backlash) -> FloatArray:
 
 def _compression(play: Backlash, displacements: FloatArray) -> FloatArray:
     """How far the teeth of either flank are pressed in, negative in the gap [m]."""
-    drive = play.torsional.drive
-    deformation = drive.base_radius * (displacements[..., 0] - drive.gear_ratio * displacements[..., 1])
-    return np.asarray(np.abs(deformation) - play.gap / 2.0)
+    return np.asarray(np.abs(play.torsional.deformation(displacements)) - play.gap / 2.0)
 
 
 def _motion(play: Backlash, tongue: Tongue) -> tuple[float, str]:
     """Largest compression [m], and what the motion is."""
     system, rest = play.system(tongue.peak), _at_rest(play)
-    period = 2.0 * math.pi / (play.torsional.drive.gear_teeth * tongue.peak)
-    periods = int(min(max(_POWERS / (tongue.growth_rate * period), _FEWEST), _MOST))
+    periods = int(min(max(_POWERS / (tongue.growth_rate * system.period), _FEWEST), _MOST))
     with np.errstate(over="ignore", invalid="ignore"):
         ends = settled(system, np.concatenate([rest, np.zeros_like(rest)])[np.newaxis], periods, kept=_KEPT)[
             :, 0

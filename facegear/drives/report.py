@@ -21,7 +21,7 @@ from facegear.design.envelope import critical_power
 from facegear.design.teeth import root_thickness
 from facegear.drives.basis import unstable_share
 from facegear.drives.drive_file import DriveFile
-from facegear.drives.verdict import Case
+from facegear.drives.verdict import Case, powered
 from facegear.floquet.modal import modal_expansion
 from facegear.floquet.models import Model, parameter_path
 from facegear.maps.lobes import CriticalThickness, StableRangeError, UnstableTopError, highest_lobes
@@ -82,7 +82,7 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
         Row("stiffness of the disk that bearings are measured by", reference_stiffness(body), "N/m"),
         Row("bearing stiffness", model.bearing_stiffness, "N/m"),
         Row("pinion mass", model.pinion_mass, "kg"),
-        Row(f"driving force of a {'pinion' if file.roles is None else 'mesh'}", force, "N"),
+        Row(f"driving force of a {powered(file.transverse)}", force, "N"),
         *(() if file.teeth is None else (Row("stiffness of a tooth pair", file.teeth.stiffness, "N/m"),)),
     )
 
@@ -145,7 +145,7 @@ def flutter(model: FaceGears, duty: Requirements) -> tuple[Row, ...]:
             for driving in model.driving
         )
 
-    each = "mesh" if len(model.driving) > 1 else "pinion"
+    each = powered(model)
     follower, dead = (smallest("follower"), smallest("dead")) if damped else (0.0, 0.0)
     return (
         Row(f"power of a {each}", 1e-3 * duty.power, "kW"),

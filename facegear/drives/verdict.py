@@ -75,6 +75,11 @@ def driven(file: DriveFile, following: Following, contact: Contact) -> FaceGears
     return file.transverse.with_gear(replace(gear, contact=contact, force=force))
 
 
+def powered(model: FaceGears) -> str:
+    """Say what has the power of a drive file: each pinion, or each mesh where a pinion has two of them."""
+    return "mesh" if len(model.driving) > 1 else "pinion"
+
+
 def cases(
     file: DriveFile, *, tolerance: float = 0.02, most_steps: int = 5, jobs: int = -1
 ) -> tuple[Case, ...]:
@@ -148,9 +153,8 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     low, high = (f"{rpm(speed):.4g}" for speed in file.requirements.speeds)
     duty = file.requirements
     teeth = "rigid" if file.teeth is None else "flexible"
-    each, gears = (
-        ("pinion", "") if file.roles is None else ("mesh", f" between two gears ({', '.join(file.roles)})")
-    )
+    each = powered(file.transverse)
+    gears = "" if file.roles is None else f" between two gears ({', '.join(file.roles)})"
     where = (
         f"from {low} to {high} rpm under the driving force of {1e-3 * duty.power:.4g} kW a {each} at "
         f"{rpm(duty.pinion_speed):.4g} rpm of the pinion, on {teeth} teeth{gears}"

@@ -69,6 +69,12 @@ def natural_exponents(mass: FloatArray, damping: FloatArray, stiffness: FloatArr
     return np.asarray(np.linalg.eigvals(_Undamped.of(mass, damping, stiffness).state), dtype=complex)
 
 
+def undamped_frequencies(mass: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """Return natural frequencies without damping, ascending, shape (n,) [rad/s]; arguments as there."""
+    exponents = natural_exponents(mass, np.zeros_like(stiffness), stiffness)
+    return np.asarray(np.sort(exponents.imag)[len(mass) :], dtype=float)
+
+
 def mean_matrices(system: PeriodicSystem) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Mass, damping and stiffness averaged over the period, loads and their impulses included, each (n, n)."""
     mass, damping, stiffness = (series.mean for series in system.fourier(1))

@@ -15,7 +15,7 @@ from scipy.optimize import linear_sum_assignment
 from facegear.floquet.models import Model, system_at
 from facegear.floquet.multipliers import Method
 from facegear.floquet.stepping import Family
-from facegear.maps.sensitivity import SPEED, system_derivative, transition_derivatives
+from facegear.maps.sensitivity import transition_derivatives
 from facegear.support.types import ComplexArray, FloatArray
 
 # Relative distance below which two multipliers are one: half of all digits of a derivative are then lost.
@@ -100,7 +100,7 @@ def exponent_sensitivity(
     array([[-1.],
            [-1.]])
     """
-    transition, changes = transition_derivatives(model, speed, parameters, method)
+    transition, changes, d_period = transition_derivatives(model, speed, parameters, method)
     system = system_at(model, speed)
     period, family = system.period, Family([system])
     values, right = np.linalg.eig(transition)
@@ -111,9 +111,6 @@ def exponent_sensitivity(
     left = np.linalg.inv(right)
     d_values = np.einsum("mi,pij,jm->mp", left, changes, right)
     exponents = np.log(values) / period
-    d_period = np.array(
-        [0.0 if name != SPEED else system_derivative(model, speed, name).period for name in parameters]
-    )
     derivatives = d_values / (values[:, None] * period) - exponents[:, None] * d_period / period
     return ExponentSensitivity(
         tuple(parameters),

@@ -258,8 +258,8 @@ def _split(family: _VariedFamily, method: Method | None) -> tuple[FloatArray, Fl
 
 def transition_derivatives(
     model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
-) -> tuple[FloatArray, FloatArray]:
-    """Transition matrix and its derivatives by parameters, in the scaled state of a family.
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Transition matrix and its derivatives by parameters, in the scaled state of a family, and those of the period.
 
     Parameters
     ----------
@@ -272,11 +272,13 @@ def transition_derivatives(
         S Φ S⁻¹.
     derivatives : array, shape (P, 2n, 2n)
         S dΦ/dp S⁻¹.
+    periods : array, shape (P,)
+        dT0/dp [s per unit of the parameter].
     """
     integer_at_least("number of parameters", len(parameters), 1)
     family, values = _varied(model, speed, parameters)
     matrix, scaled = _split(family, method)
-    return matrix, scaled / values[:, None, None]
+    return matrix, scaled / values[:, None, None], np.array([by.period for by in family._derivatives])
 
 
 @dataclass(frozen=True, eq=False)
@@ -338,15 +340,13 @@ def sensitivity(
     TypeError, ValueError
         As :func:`system_derivative`; ValueError for systems with velocity kicks.
     """
-    integer_at_least("number of parameters", len(parameters), 1)
-    family, values = _varied(model, speed, parameters)
-    matrix, scaled = _split(family, method)
+    matrix, changes, d_period = transition_derivatives(model, speed, parameters, method)
     critical, left, right = _critical(matrix, speed)
-    d_multiplier = np.einsum("i,pij,j->p", left, scaled, right) / values
+    d_multiplier = np.einsum("i,pij,j->p", left, changes, right)
     period = model.system(speed).period
     growth = math.log(abs(critical)) / period
-    d_period = np.array([by.period for by in family._derivatives])
     d_growth = (d_multiplier / critical).real / period - growth * d_period / period
+    values = np.array([parameter_value(model, speed, name) for name in parameters])
     return Sensitivity(tuple(parameters), values, critical, d_multiplier, growth, d_growth)
 
 

@@ -17,13 +17,12 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.models import Coordinate
 from facegear.floquet.orbits import Orbit
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, named
+from facegear.floquet.periodic import PeriodicSystem, named
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics.torsional import Torsional
 from facegear.support.parameters import designed, finite, keep, one_of, within
@@ -134,13 +133,11 @@ class Backlash:
         speed : float
             Ω2 of the face gear [rad/s], greater than 0.
         """
-        system = self.torsional.system(speed)
-        loads: tuple[ContactLoad, ...] = system.loads
-        if self.transmission_error is not None:
-            error = self.transmission_error
-            loads = tuple(dataclasses.replace(load, transmission_error=error) for load in loads)
-        torque = PiecewiseChebyshev.constant([0.0, 0.0, -self.torque])
-        return dataclasses.replace(system, loads=loads, force=torque)
+        system, error = self.torsional.under(self.torque, speed), self.transmission_error
+        if error is None:
+            return system
+        loads = tuple(dataclasses.replace(load, transmission_error=error) for load in system.loads)
+        return dataclasses.replace(system, loads=loads)
 
     def system(self, speed: float) -> ClearanceSystem:
         """Equations of motion at a constant speed.
@@ -169,9 +166,7 @@ class Backlash:
 
     def deformation(self, orbit: Orbit, fraction: ArrayLike) -> FloatArray:
         """Mesh deformation of the gears, r_b1 (χ1 − χ2 N2/N1), at fractions of the orbit's periods [m]."""
-        drive = self.torsional.drive
-        q = orbit.displacements(fraction)
-        return np.asarray(drive.base_radius * (q[..., 0] - drive.gear_ratio * q[..., 1]))
+        return self.torsional.deformation(orbit.displacements(fraction))
 
     def parts(self, orbit: Orbit) -> bool:
         """Whether at some instants no forward pair is in contact."""

@@ -10,10 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from facegear.floquet.models import Coordinate
-from facegear.floquet.modes import natural_exponents
+from facegear.floquet.modes import undamped_frequencies
 from facegear.floquet.periodic import PeriodicSystem, named
 from facegear.mechanics.exact_rods import exact_frequencies
 from facegear.mechanics.rods import (
@@ -119,8 +117,7 @@ class HeavyShafts:
         system = self.system(1.0)
         stiffness = system.stiffness.copy()
         stiffness[:3, :3] = self.torsional.mean_stiffness
-        exponents = natural_exponents(system.mass, np.zeros_like(stiffness), stiffness)
-        return np.sort(exponents.imag)[len(stiffness) :]
+        return undamped_frequencies(system.mass, stiffness)
 
     def natural_speeds(self) -> FloatArray:
         """Speeds of the face gear at which the mesh frequency is a natural one (7-20), one a coordinate [rad/s]."""

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.floquet.periodic import PeriodicSystem, named
+from facegear.floquet.periodic import PeriodicSystem, named, require_system
 from facegear.support.parameters import (
     STEEL,
     Material,
@@ -226,8 +226,7 @@ def with_mass(system: PeriodicSystem, shafts: Iterable[Shaft]) -> PeriodicSystem
     >>> f"{np.sort(natural_exponents(*matrices).imag)[11]:.4f}"
     '0.8603'
     """
-    if not isinstance(system, PeriodicSystem):
-        raise TypeError(f"system must be a PeriodicSystem, got {named(system)}")
+    require_system(system)
     shafts = checked_shafts(shafts, system.size)
     if system.jumps:
         raise ValueError("system must have no jumps of the state: they do not say what becomes of the rods")

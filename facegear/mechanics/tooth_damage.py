@@ -113,8 +113,7 @@ class DamagedTooth:
 
     def pressed(self, speed: float) -> PeriodicSystem:
         """Equations of the intact gearbox under the torque, with the mesh period, at a speed [rad/s]."""
-        torque = PiecewiseChebyshev.constant([0.0, 0.0, -self.torque])
-        return dataclasses.replace(self.torsional.system(speed), force=torque)
+        return self.torsional.under(self.torque, speed)
 
     def mesh_periods(self, speed: float) -> tuple[PeriodicSystem, ...]:
         """Equations of the kinds of mesh periods: intact, then with the damaged pair youngest, next, and so on."""

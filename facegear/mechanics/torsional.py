@@ -14,7 +14,7 @@ otherwise.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Literal, Protocol
 
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.models import Coordinate
-from facegear.floquet.modes import natural_exponents
+from facegear.floquet.modes import undamped_frequencies
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
@@ -341,13 +341,20 @@ class Torsional:
 
     def natural_frequencies(self) -> FloatArray:
         """Natural frequencies of the mean system at rest (7-17 with Ω2 = 0), ascending, shape (3,) [rad/s]."""
-        mass = self.gearbox.in_si.mass_matrix
-        exponents = natural_exponents(mass, np.zeros_like(mass), self.mean_stiffness)
-        return np.sort(exponents.imag)[len(mass) :]
+        return undamped_frequencies(self.gearbox.in_si.mass_matrix, self.mean_stiffness)
 
     def natural_speeds(self) -> FloatArray:
         """Speeds of the face gear at which the mesh frequency is a natural one (7-20), shape (3,) [rad/s]."""
         return natural_speed(self.drive, self.natural_frequencies())
+
+    def deformation(self, angles: FloatArray) -> FloatArray:
+        """Mesh deformation r_b1 (χ1 − χ2 N2/N1) of conjugate teeth at angles (..., 3) [m]; its rate at their rates."""
+        drive = self.drive
+        return np.asarray(drive.base_radius * (angles[..., 0] - drive.gear_ratio * angles[..., 1]))
+
+    def under(self, torque: float, speed: float) -> PeriodicSystem:
+        """Equations of motion as :meth:`system`, under a constant torque T_o of the load [N m]."""
+        return replace(self.system(speed), force=PiecewiseChebyshev.constant([0.0, 0.0, -torque]))
 
     def system(self, speed: float) -> PeriodicSystem:
         """Equations of motion at a constant speed (7-10).

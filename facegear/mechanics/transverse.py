@@ -258,10 +258,14 @@ class PinionsOnDisk(ABC):
     def disk_matrices(self, speed: float) -> tuple[FloatArray, FloatArray]:
         """Damping and stiffness of the disk under the driving forces alone at Ω2 [rad/s], each (n, n)."""
         damping, stiffness = disk_matrices(self.body, speed)
-        if self.force is not None and self.force.power > 0.0:
-            (driving,) = self.driving
-            stiffness = stiffness + self.force.stiffness(self.body, speed, *driving)
-        return damping, stiffness
+        (driving,) = self.driving
+        return damping, stiffness + self.force_stiffness(speed, driving)
+
+    def force_stiffness(self, speed: float, driving: Driving) -> FloatArray | float:
+        """K_f of the driving forces at Ω2 [rad/s] on a gear that is driven so [1/s²], (n, n); 0 without a force."""
+        if self.force is None or self.force.power == 0.0:
+            return 0.0
+        return self.force.stiffness(self.body, speed, *driving)
 
 
 @dataclass(frozen=True)

@@ -202,23 +202,18 @@ class TwoGears:
         own = np.array([gear.pinion_mass, gear.bearing_damping, gear.bearing_stiffness]) / modal_mass(
             gear.body
         )
+        signs = mirror_signs(gear.body)
+        # The upper gear is driven as it turns: in the coordinates of the lower one that is the mirror image.
+        images = (np.ones((1, 1)), np.outer(signs, signs))
         disks = [disk_matrices(gear.body, turning) for turning in (speed, -speed)]
         damping = block_diag(*(disk[0] for disk in disks), own[1] * np.eye(count))
-        pressed = [disk[1] + force for disk, force in zip(disks, self._force_stiffness(speed), strict=True)]
+        pressed = [
+            disk[1] + image * gear.force_stiffness(speed, driving)
+            for disk, image, driving in zip(disks, images, self.driving, strict=True)
+        ]
         stiffness = block_diag(*pressed, own[2] * np.eye(count))
         mass = np.diag(np.append(np.ones(len(damping) - count), np.full(count, own[0])))
         return PeriodicSystem(mass, damping, stiffness, self.loads, mesh_period(gear.body.drive, speed))
-
-    def _force_stiffness(self, speed: float) -> tuple[FloatArray | float, FloatArray | float]:
-        """K_f of the forces in the planes of the lower and the upper gear [1/s²]."""
-        gear, force = self.gear, self.gear.force
-        if force is None or force.power == 0.0:
-            return 0.0, 0.0
-        below, above = self.driving
-        signs = mirror_signs(gear.body)
-        # The upper gear is seen as it turns: in the coordinates of the lower one that is the mirror image.
-        mirrored = np.outer(signs, signs) * force.stiffness(gear.body, speed, *above)
-        return force.stiffness(gear.body, speed, *below), mirrored
 
 
 class _Mesh(NamedTuple):

@@ -127,9 +127,10 @@ def motions(model: Backlash, orbits: Sequence[Orbit], points: int) -> xr.Dataset
     fraction = np.linspace(0.0, 1.0, points)
 
     def whole(orbit: Orbit) -> tuple[FloatArray, FloatArray]:
-        drive = model.torsional.drive
-        arms = drive.base_radius * np.array([1.0, -drive.gear_ratio, 0.0])
-        return orbit.displacements(fraction) @ arms, orbit.velocities(fraction) @ arms
+        gearbox = model.torsional
+        return gearbox.deformation(orbit.displacements(fraction)), gearbox.deformation(
+            orbit.velocities(fraction)
+        )
 
     ordered = sorted(orbits, key=lambda orbit: float(whole(orbit)[0].max()))
     deformation, rate = np.moveaxis(np.array([whole(orbit) for orbit in ordered]), 1, 0)
@@ -221,8 +222,7 @@ def basins(
     drawn = pressed.start + spread * box * np.random.default_rng(seed).uniform(-1.0, 1.0, (count, box.size))
     with np.errstate(over="ignore", invalid="ignore"):
         ends = settled(system, drawn, periods, kept=12)
-    drive = model.torsional.drive
-    deformation = drive.base_radius * (ends[..., 0] - drive.gear_ratio * ends[..., 1])
+    deformation = model.torsional.deformation(ends[..., :3])
     return xr.Dataset(
         {
             "lowest": variable(

@@ -246,10 +246,10 @@ def hit_rates(
     rest, rng = without_common(signal), np.random.default_rng(seed)
     rows = []
     for level in levels.tolist():
-        noise = rng.normal(size=(trials, *rest.shape))
-        slots, amounts = search.found(rest + level * size * noise)
+        noisy = rest + level * size * rng.normal(size=(trials, *rest.shape))
+        slots, amounts = search.found(noisy)
         right = slots == slot
-        known = search.projections(rest + level * size * noise)[:, slot] / search.energy
+        known = search.projections(noisy)[:, slot] / search.energy
         rows.append(
             (
                 right.mean(),

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from facegear.design.changes import Change, possible_changes, slopes_of_tongues
+from facegear.design.changes import Change, possible_changes, scaled, slopes_of_tongues
 from facegear.design.teeth import constant_pitch_radius
 from facegear.floquet.models import Model, replace_at
 from facegear.maps.tracing import Tongue, tongues
@@ -40,23 +41,13 @@ def of_the_teeth(path: tuple[str, ...]) -> tuple[Change, ...]:
     tuple of Change
     """
 
-    def scaled(name: str, model: Any, change: float) -> Any:
-        place = (*path, name)
-        value = model
-        for part in place:
-            value = getattr(value, part)
-        return replace_at(model, place, value * (1.0 + change))
-
     def longer(model: Any, change: float) -> Any:
-        drive = model
-        for part in path:
-            drive = getattr(drive, part)
-        ratio = model.contact.ratio(drive) * (1.0 + change)
+        ratio = model.contact.ratio(attrgetter(".".join(path))(model)) * (1.0 + change)
         return replace(model, contact=replace(model.contact, contact_ratio=ratio))
 
     return (
-        Change("module", partial(scaled, "module")),
-        Change("pressure angle", partial(scaled, "pressure_angle")),
+        Change("module", partial(scaled, path=(*path, "module"))),
+        Change("pressure angle", partial(scaled, path=(*path, "pressure_angle"))),
         Change("contact ratio alone", longer),
     )
 
