@@ -44,6 +44,8 @@ from .support.parameters import rad_per_s as rad_per_s
 from .support.parameters import rpm as rpm
 from .support.parameters import watt as watt
 
+__version__: str
+
 __all__ = [
     "STEEL",
     "Body",

@@ -9,8 +9,6 @@ that is raised until its unstable speeds stand still (:mod:`facegear.drives.basi
 
 from __future__ import annotations
 
-import html
-import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -266,25 +264,3 @@ def _left_out(file: DriveFile) -> str:
         f"Not included: {', '.join(missing)}. The driving force is the same at all speeds; all parameters are taken as "
         "exact; speeds outside the range are not looked at."
     )
-
-
-def as_html(words: str) -> str:
-    """Text from a file as HTML that shows it and does nothing else.
-
-    Markup and formulas in it stay as they are written; line breaks and other control characters become blanks.
-
-    Parameters
-    ----------
-    words : str
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> as_html("A <b> & $x$")
-    '<span class="tex2jax_ignore mathjax_ignore">A &lt;b&gt; &amp; $x$</span>'
-    """
-    visible = "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Zl", "Zp") else c for c in words)
-    return f'<span class="tex2jax_ignore mathjax_ignore">{html.escape(visible)}</span>'

@@ -1,14 +1,11 @@
 """Verdict on a drive: driving force, contact ratio, basis, in words."""
 
-import html.parser
 import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from facegear.drives import verdict
 from facegear.drives.basis import BasisStep, SettledTongues
@@ -204,28 +201,3 @@ class TestWords:
 
 def stable_or(intervals):
     return case("Tregold", "follower", *intervals).found.tongues
-
-
-class Reader(html.parser.HTMLParser):
-    """Reads a piece of HTML: its elements and its text."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.elements, self.text = [], ""
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag, attributes):
-        self.elements.append(tag)
-
-    def handle_data(self, data):
-        self.text += data
-
-
-@given(st.text(min_size=1, max_size=80))
-def test_text_of_a_file_stays_text(words):
-    read = Reader(verdict.as_html(words))
-    assert read.elements == ["span"]
-    assert len(read.text) == len(words)
-    assert all(shown in (given_, " ") for shown, given_ in zip(read.text, words, strict=True))
-    assert "\n" not in read.text
