@@ -27,6 +27,7 @@ from facegear.drives.drive_keys import (
     Key,
 )
 from facegear.drives.flexible_teeth import FlexibleTeeth
+from facegear.drives.forces import RIM, pressed
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
 from facegear.mechanics.backlash import Backlash
@@ -78,6 +79,8 @@ class DriveFile:
         What each pinion does between two gears; None where there is one gear.
     play : Backlash or None
         The gearbox with play of its teeth, under the torque of one pinion's power; None where there is no play.
+    force_at : str
+        Where the driving force presses, one of :data:`facegear.drives.forces.PLACES`.
     """
 
     name: str
@@ -88,6 +91,7 @@ class DriveFile:
     teeth: FlexibleTeeth | None = None
     roles: tuple[Role, ...] | None = None
     play: Backlash | None = None
+    force_at: str = RIM
 
     @property
     def drive(self) -> Drive:
@@ -369,7 +373,13 @@ def _built(found: _Found) -> DriveFile:
         )
         torque = requirements.power / requirements.pinion_speed * drive.gear_ratio
         play = _by_model(found, "gearbox", lambda: _play(gearbox, torsional, torque))
-    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles, play)
+    force_at = values["operation"]["force_at"]
+    _by_model(
+        found,
+        "operation",
+        lambda: [pressed(force_at, each, drive).points(drive) for each in contacts.values()],
+    )
+    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles, play, force_at)
 
 
 def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[int]:

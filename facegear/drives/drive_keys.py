@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from facegear.drives.flexible_teeth import CENTROID, SHARING
+from facegear.drives.forces import PLACES, RIM
 from facegear.geometry.drive import FEWEST_TEETH
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
 from facegear.mechanics.two_gears import DRIVES
@@ -304,6 +305,14 @@ _OPERATION = Section(
         Key("power_hp", "power of one pinion (745.69987 W)", "number", "hp", 1e-2, 1e5),
         Key("pinion_speed_rpm", "speed of the pinion at that power", "number", "rpm", 1.0, 1e6),
         Key("safety_factor", "safety factor against yielding (4-22)", "number", "", 1.0, 100.0, default=1.5),
+        Key(
+            "force_at",
+            "where the driving force of the power presses: one point of the rim, as printed (rim), or of the pitch "
+            "circle (pitch); face and root of one tooth (tooth), or of the tooth pairs in mesh (pairs, chapter 8)",
+            "choice",
+            default=RIM,
+            choices=PLACES,
+        ),
     ),
 )
 

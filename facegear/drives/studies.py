@@ -7,12 +7,13 @@ from dataclasses import replace
 
 from facegear.drives.explore import Choice, Quantity, Settings, Study
 from facegear.drives.flexible_teeth import CENTROID, FlexibleTeeth
+from facegear.drives.forces import RIM, pressed
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.classical import Mathieu, Meissner
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.edge_stiffness import DrivingForce
+from facegear.mechanics.edge_stiffness import DrivingForce, Following
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.sharing import RULES
@@ -22,6 +23,12 @@ from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, rad_per_s
 
 TREGOLD, TRUE_SWEEP = "Tregold, as printed", "true sweep"
+
+FOLLOWER, DEAD = "follows the rim", "keeps its direction"
+RIM_ONLY = "one point of the rim"
+_DIRECTIONS: dict[Following, str] = {"follower": FOLLOWER, "dead": DEAD}
+# The words of a reader for those of a drive file.
+PRESSED = {RIM_ONLY: RIM, "the pitch point": "pitch", "one tooth": "tooth", "the pairs in mesh": "pairs"}
 
 _RPM = float(rad_per_s(1.0))
 _DEGREE = math.pi / 180.0
@@ -75,17 +82,13 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
     Raises
     ------
     ValueError
-        If a value of the model lies outside the range of its control, or its contact ratio is neither of the two.
+        If a value of the model lies outside the range of its control, its contact ratio is neither of the two, or its
+        force presses elsewhere than can be chosen.
     """
     start = cases.FIGURES["4.4a"].model() if model is None else model
     body, drive, load = start.body, start.body.drive, start.load
     degrees = [math.degrees(angle) % 360.0 for angle in start.pinion_angles]
     degrees += [_SECOND, _THIRD][len(degrees) - 1 :]
-    horsepower = 0.0
-    if start.force is not None:
-        # The power control holds at the highest speed: the same force.
-        full = rad_per_s(highest_speed_rpm) / drive.speed_ratio
-        horsepower = start.force.power / start.force.pinion_speed * full / WATT_PER_HORSEPOWER
     clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
     ratio = next((name for name, value in clocks.items() if value == start.contact_ratio), None)
     if ratio is None:
@@ -133,16 +136,7 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
             when=("pinions", "3"),
         ),
         Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), ratio),
-        Quantity(
-            "power",
-            "power of a pinion at top speed [hp]",
-            0.0,
-            1500.0,
-            horsepower,
-            10.0,
-            unit=WATT_PER_HORSEPOWER,
-            parameter="power",
-        ),
+        *_force_controls(start.force, start.contact, drive, highest_speed_rpm),
     )
     return Study(controls, _drive_model, "stiffness", _speed(highest_speed_rpm))
 
@@ -156,7 +150,51 @@ def _drive_model(settings: Settings) -> Model:
         MeshLoad(settings["stiffness"], settings["damping"], settings["mass"]),
         pinion_angles=angles,
         contact=_contact(settings, drive),
-        force=DrivingForce(settings["power"], settings["highest_speed"] / drive.speed_ratio),
+        force=_force(settings, drive),
+    )
+
+
+def _force_controls(
+    force: DrivingForce | None, contact: Contact, drive: Drive, highest_speed_rpm: float
+) -> tuple[Quantity | Choice, ...]:
+    """Return the controls of the driving force, at first where that of a model is.
+
+    Raises
+    ------
+    ValueError
+        If its force presses elsewhere than a reader can choose.
+    """
+    at_top = float(rad_per_s(highest_speed_rpm)) / drive.speed_ratio
+    here = DrivingForce(0.0, at_top) if force is None else force
+    places = {name: pressed(place, contact, drive) for name, place in PRESSED.items()}
+    place = next((name for name, spread in places.items() if spread == here.spread), None)
+    if place is None:
+        raise ValueError(f"force of the model must press on {' or '.join(places)}, got {here.spread!r}")
+    # The power control holds at the highest speed: the same force.
+    horsepower = here.power / here.pinion_speed * at_top / WATT_PER_HORSEPOWER
+    return (
+        Quantity(
+            "power",
+            "power of a pinion at top speed [hp]",
+            0.0,
+            1500.0,
+            horsepower,
+            10.0,
+            unit=WATT_PER_HORSEPOWER,
+            parameter="power",
+        ),
+        Choice("force_at", "driving force on", tuple(PRESSED), place),
+        Choice("following", "direction of the force", (FOLLOWER, DEAD), _DIRECTIONS[here.following]),
+    )
+
+
+def _force(settings: Settings, drive: Drive) -> DrivingForce:
+    """Driving force of the power at top speed, as the reader wants it."""
+    return DrivingForce(
+        settings["power"],
+        settings["highest_speed"] / drive.speed_ratio,
+        following=next(key for key, words in _DIRECTIONS.items() if words == settings["following"]),
+        spread=pressed(PRESSED[settings["force_at"]], _contact(settings, drive), drive),
     )
 
 
@@ -315,6 +353,7 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
         _thickness(body),
         _bearing_stiffness(load),
         _pinion_mass(load, 0.05),
+        *_force_controls(start.force, start.contact, body.drive, highest_speed_rpm),
     )
 
     def build(settings: Settings) -> Model:
@@ -332,6 +371,7 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
             (0.0, settings["second_angle"]) if pinions in (FRONT, BOTH) else (0.0,),
             teeth.contact(_contact(settings, drive), drive),
         )
+        gear = replace(gear, force=_force(settings, drive))
         return TwoGears(gear) if pinions == BETWEEN else gear
 
     return Study(controls, build, "mesh_stiffness", _speed(highest_speed_rpm))
