@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
+from unicodedata import lookup
 
 from facegear.drives.flexible_teeth import CENTROID, SHARING
 from facegear.drives.forces import PLACES, RIM
@@ -44,6 +45,21 @@ PER_SI: Mapping[str, float] = MappingProxyType(
 # Value in SI is this divided by the value in the file.
 OVER_SI: Mapping[str, float] = MappingProxyType({"1/in": 25.4e-3})
 _UNIT_IN_NAME = re.compile(r"_(mm|um|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
+
+
+def plain(meaning: str) -> str:
+    r"""Give documentation without its marks, Greek letters as such.
+
+    Examples
+    --------
+    >>> plain(r"$\mu$, as `gearbox` has it")
+    'μ, as gearbox has it'
+    """
+    return re.sub(
+        r"\\([a-z]+)",
+        lambda found: lookup(f"GREEK SMALL LETTER {found[1].upper()}"),
+        re.sub(r"[$`]", "", meaning),
+    )
 
 
 @dataclass(frozen=True)
@@ -102,6 +118,11 @@ class Key:
     def from_si(self, value: float) -> float:
         """Value in the file of a value in SI."""
         return OVER_SI[self.unit] / value if self.unit in OVER_SI else value * PER_SI.get(self.unit, 1.0)
+
+    @property
+    def plain_meaning(self) -> str:
+        """Meaning without marks, Greek letters as such."""
+        return plain(self.meaning)
 
     @property
     def fewest(self) -> int:
