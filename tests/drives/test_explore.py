@@ -175,7 +175,7 @@ def test_controls_of_a_drive_stand_at_first_where_its_model_does(start):
 def test_a_force_on_places_that_cannot_be_chosen_is_refused():
     elsewhere = replace(THREE, force=replace(THREE.force, spread=FaceStrip()))
     with pytest.raises(
-        ValueError, match="force of the model must press on one point of the rim or .*, got FaceStrip"
+        ValueError, match=r"force of the model must press on one point of the rim or .*, got FaceStrip"
     ):
         studies.drive_study(elsewhere)
 
@@ -194,6 +194,8 @@ STUDIES = {
     "drive": (studies.drive_study(THREE), {}, 60.0),
     "oscillator": (studies.oscillator_study(), {"wave": studies.SQUARE}, 1.9),
     "gearbox": (studies.gearbox_study(), {}, 60.0),
+    "shafts": (studies.shafts_study(), {}, 60.0),
+    "damage": (studies.damage_study(), {}, 60.0),
     "teeth": (studies.teeth_study(), {"pinions": studies.BOTH, "power": 300.0}, 60.0),
 }
 
