@@ -1,9 +1,11 @@
-"""What the live explorers of the book explore: a drive, classical equations, a gearbox, flexible teeth."""
+"""What the live explorers of the book explore: drives, classical equations, gearboxes sound and damaged."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 from facegear.drives.explore import Choice, Quantity, Settings, Study
 from facegear.drives.flexible_teeth import CENTROID, FlexibleTeeth
@@ -14,6 +16,7 @@ from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.classical import Mathieu, Meissner
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
+from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.sharing import RULES
@@ -21,6 +24,8 @@ from facegear.mechanics.torsional import Torsional, mesh_stiffness
 from facegear.mechanics.transverse import Transverse
 from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, rad_per_s
+
+ModelT = TypeVar("ModelT", bound=Model)
 
 TREGOLD, TRUE_SWEEP = "Tregold, as printed", "true sweep"
 
@@ -244,30 +249,19 @@ def gearbox_study(
     """
     start = gearboxes.FIGURES["7.12a"].model() if model is None else model
 
-    def quantity(
-        name: str, label: str, lowest: float, highest: float, step: float, unit: float = 1.0
-    ) -> Quantity:
-        value = value_of(start, name) / unit
-        return Quantity(name, label, lowest, max(highest, value), value, step, unit, parameter=name)
-
     controls = (
-        quantity("gear_inertia", "gear inertia J₂/J₁", 1.0, 100.0, 1.0),
-        quantity("load_inertia", "load inertia Jₒ/J₁", 1.0, 100.0, 1.0),
-        quantity("input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
-        quantity("output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
-        quantity("mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
-        quantity("input_damping", "input damping c₁/k₁ [µs]", 0.0, 100.0, 0.5, 1e-6),
-        quantity("output_damping", "output damping c₂/k₂ [µs]", 0.0, 100.0, 0.5, 1e-6),
-        quantity("correction_factor", "correction of the mesh stiffness c_f", 0.05, 1.0, 0.05),
+        _quantity(start, "gear_inertia", "gear inertia J₂/J₁", 1.0, 100.0, 1.0),
+        _quantity(start, "load_inertia", "load inertia Jₒ/J₁", 1.0, 100.0, 1.0),
+        _quantity(start, "input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
+        _quantity(start, "input_damping", "input damping c₁/k₁ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        _quantity(start, "output_damping", "output damping c₂/k₂ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        _quantity(start, "correction_factor", "correction of the mesh stiffness c_f", 0.05, 1.0, 0.05),
     )
-    names = tuple(control.name for control in controls)
 
     def build(settings: Settings) -> Model:
-        changed = start
-        for name in names:
-            if name in settings:
-                changed = replace_parameter(changed, name, settings[name])
-        return changed
+        return _with_parameters(start, controls, settings)
 
     return Study(
         controls,
@@ -275,6 +269,92 @@ def gearbox_study(
         "input_damping",
         _speed(highest_speed_rpm),
     )
+
+
+def shafts_study(model: HeavyShafts | None = None, highest_speed_rpm: float = 1000.0) -> Study:
+    """Torsional vibration with shafts that have mass: their lengths, their modes, stiffness and damping (chapter 8).
+
+    Parameters
+    ----------
+    model : HeavyShafts, optional
+        With both lengths, and a :class:`facegear.mechanics.gearboxes.ProportionalGearbox`, where the controls stand at
+        first; that of Fig. 7.12(a) with shafts of 0.3 m if left out.
+    highest_speed_rpm : float
+        End of the speed axis [rpm of the face gear].
+
+    Returns
+    -------
+    Study
+    """
+    start = HeavyShafts(gearboxes.FIGURES["7.12a"].model(), 0.3, 0.3, modes=1) if model is None else model
+    controls = (
+        _quantity(start, "input_length", "length of the input shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
+        _quantity(start, "output_length", "length of the output shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
+        Quantity("modes", "modes of each shaft", 0, 6, start.modes, 1, whole=True),
+        _quantity(start, "input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
+        _quantity(start, "input_damping", "input damping c₁/k₁ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        _quantity(start, "output_damping", "output damping c₂/k₂ [µs]", 0.0, 100.0, 0.5, 1e-6),
+    )
+
+    def build(settings: Settings) -> Model:
+        return replace(_with_parameters(start, controls, settings), modes=settings["modes"])
+
+    return Study(controls, build, "output_length", _speed(highest_speed_rpm), columns=40, rows=20)
+
+
+def damage_study(model: Torsional | None = None, highest_speed_rpm: float = 1000.0) -> Study:
+    """Torsional vibration of a gearbox that loses stiffness: what is left of shafts and teeth (chapter 8).
+
+    Parameters
+    ----------
+    model : Torsional, optional
+        The intact gearbox, a :class:`facegear.mechanics.torsional.Gearbox`; that of Fig. 7.12(b) if left out.
+    highest_speed_rpm : float
+        End of the speed axis [rpm of the face gear].
+
+    Returns
+    -------
+    Study
+        Its damping coefficients stay what they are.
+    """
+    start = Torsional(gearboxes.FIGURES["7.12b"].gearbox.in_si) if model is None else model
+    parts = {"input_stiffness": "input shaft", "output_stiffness": "output shaft", "mesh_stiffness": "teeth"}
+    controls = tuple(
+        Quantity(
+            name,
+            f"stiffness left, {part} [%]",
+            20.0,
+            100.0,
+            100.0,
+            1.0,
+            value_of(start, name) / 100.0,
+            parameter=name,
+        )
+        for name, part in parts.items()
+    )
+
+    def build(settings: Settings) -> Model:
+        return _with_parameters(start, controls, settings)
+
+    return Study(controls, build, "mesh_stiffness", _speed(highest_speed_rpm))
+
+
+def _quantity(
+    start: Model, name: str, label: str, lowest: float, highest: float, step: float, unit: float = 1.0
+) -> Quantity:
+    """Return the control of a parameter, at first where that of a model is."""
+    value = value_of(start, name) / unit
+    return Quantity(name, label, lowest, max(highest, value), value, step, unit, parameter=name)
+
+
+def _with_parameters(start: ModelT, controls: Sequence[Quantity], settings: Settings) -> ModelT:
+    """Return a model with what the reader has set of its parameters."""
+    for control in controls:
+        if control.parameter is not None and control.name in settings:
+            start = replace_parameter(start, control.parameter, settings[control.name])
+    return start
 
 
 ALONE, FRONT, BOTH, BETWEEN = "one", "two on one face", "one on either face", "one between two gears"

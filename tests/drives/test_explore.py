@@ -194,6 +194,8 @@ STUDIES = {
     "drive": (studies.drive_study(THREE), {}, 60.0),
     "oscillator": (studies.oscillator_study(), {"wave": studies.SQUARE}, 1.9),
     "gearbox": (studies.gearbox_study(), {}, 60.0),
+    "shafts": (studies.shafts_study(), {}, 60.0),
+    "damage": (studies.damage_study(), {}, 60.0),
     "teeth": (studies.teeth_study(), {"pinions": studies.BOTH, "power": 300.0}, 60.0),
 }
 
