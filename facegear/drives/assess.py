@@ -39,6 +39,7 @@ from facegear.maps.response_map import frequency_response
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.transverse import FaceGears
+from facegear.support.labelled import text, variable
 from facegear.support.parameters import number_of_workers, rpm
 
 Intervals = tuple[tuple[float, float], ...]
@@ -176,15 +177,16 @@ class Assessment:
         low, high = (f"{rpm(speed):.4g}" for speed in self.speeds)
         count = len(self.outcomes)
         stable = sum(outcome.is_stable for outcome in self.outcomes)
+        are = f"{stable} {'is' if stable == 1 else 'are'}"
         where = f"from {low} to {high} rpm, of {count} models of the disk's motion"
         if self.verdict == SAFE:
             words = f"Safe under all: {where} none is unstable at any speed."
         elif self.verdict == UNSTABLE and stable:
-            words = f"Unstable under all, in torsion; {where} {stable} are stable at all speeds."
+            words = f"Unstable under all, in torsion; {where} {are} stable at all speeds."
         elif self.verdict == UNSTABLE:
             words = f"Unstable under all: {where} each is unstable at some speeds."
         else:
-            words = f"Depends on {_listed(self.decides)}: {where} {stable} are stable at all speeds."
+            words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
         if self.torsion:
             words += (
                 f" In torsion {sum(not found for found in self.torsion.values())} of {len(self.torsion)} are."
@@ -211,18 +213,59 @@ class Assessment:
         return f"{kind} {strongest.label} at {speed}, growing by {strongest.growth_rate:.3g} 1/s ({name})"
 
     @property
+    def over_tolerances(self) -> tuple[str, ...]:
+        """What the tolerances of the file make of its own contact and teeth, a sentence for each force."""
+        given = self.file.tolerances
+        ranges = ", ".join(
+            f"{name} ±{100 * part:g} %"
+            for name, part in (
+                ("stiffness", given.stiffness),
+                ("damping", given.damping),
+                ("speed", given.speed),
+            )
+            if part
+        )
+        found = []
+        for force, case in self.worst.items():
+            if case.is_stable:
+                words = "stable for all values"
+            elif case.swept:
+                words = (
+                    f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"
+                )
+            else:
+                speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
+                words = f"stable at all corners; tongues open between them at {speeds} rpm"
+            found.append(f"With {ranges}, {force}: {words}.")
+        return tuple(found)
+
+    @property
+    def static_force(self) -> float:
+        """Whole force between the teeth of a mesh at rest [N]."""
+        duty = self.file.requirements
+        return duty.power / duty.pinion_speed / self.file.drive.base_radius
+
+    @property
     def dynamic_load(self) -> str:
         """Largest force of a tooth pair over speed in torsion, against that at rest, in words; empty if not known."""
         if self.response is None:
             return ""
         highest = self.response["force_highest"].max("load")
-        at = int(highest.argmax("speed"))
-        duty, drive = self.file.requirements, self.file.drive
-        rest = duty.power / duty.pinion_speed / drive.base_radius
+        at = int(highest.fillna(-np.inf).argmax("speed"))
         largest, speed = float(highest[at]), float(highest.speed[at])
+        parted = 100 * float((self.response["force_lowest"].min("load") < 0.0).mean())
         return (
-            f"In torsion a tooth pair bears up to {largest:.4g} N where that is stable, at {rpm(speed):.4g} rpm: "
-            f"{largest / rest:.3g} times the whole static force of {rest:.4g} N"
+            f"In torsion, where it is stable and flanks do not part, a tooth pair bears up to {largest:.4g} N, at "
+            f"{rpm(speed):.4g} rpm: {largest / self.static_force:.3g} times the whole static force of "
+            f"{self.static_force:.4g} N. At {parted:.3g} % of {highest.size} speeds flanks would part."
+        )
+
+    @property
+    def not_varied(self) -> str:
+        """What no model includes."""
+        return (
+            "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
+            "temperature; the driving force is the same at all speeds, and speeds outside the range are not looked at."
         )
 
     def table(self) -> xr.Dataset:
@@ -234,15 +277,24 @@ class Assessment:
             Over ``model``: ``unstable_share`` [-], ``largest_growth`` [1/s], ``tongues``, ``settled``; names of
             contact, force and teeth as coordinates.
         """
-        columns = {name: ("model", [getattr(o.variant, name) for o in self.outcomes]) for name in _EFFECTS}
+        names = {
+            name: text("model", [getattr(o.variant, name) for o in self.outcomes], words)
+            for name, words in (("contact", "Contact"), ("force", "Driving force"), ("teeth", "Teeth"))
+        }
+        shares = [unstable_share(o.tongues, self.speeds) for o in self.outcomes]
+        growth = [o.growth_rate for o in self.outcomes]
+        count = [float(len(o.tongues)) for o in self.outcomes]
+        settled = [float(o.settled) for o in self.outcomes]
         return xr.Dataset(
             {
-                "unstable_share": ("model", [unstable_share(o.tongues, self.speeds) for o in self.outcomes]),
-                "largest_growth": ("model", [o.growth_rate for o in self.outcomes], {"units": "1/s"}),
-                "tongues": ("model", [len(o.tongues) for o in self.outcomes]),
-                "settled": ("model", [int(o.settled) for o in self.outcomes]),
+                "unstable_share": variable("model", shares, "Unstable part of the speeds", "1", atol=1e-7),
+                "largest_growth": variable(
+                    "model", growth, "Largest growth rate", "1/s", rtol=1e-6, atol=1e-6
+                ),
+                "tongues": variable("model", count, "Number of tongues", "1", atol=0.1),
+                "settled": variable("model", settled, "1 where the basis suffices", "1", atol=0.1),
             },
-            columns,
+            {"model": np.arange(len(self.outcomes)), **names},
             {"parameters": describe(self.file)},
         )
 

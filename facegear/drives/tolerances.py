@@ -8,7 +8,7 @@ the largest growth rate is followed along the way, zeros of it that touch and tu
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
 
@@ -18,18 +18,13 @@ from facegear.floquet.models import Coordinate, parameter_names, replace_paramet
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.closing import ClosingValue, growth_peaks
 from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import keep, positive, within
 
-# Powers of the factors of stiffness and of damping by which each parameter of a gear changes. Dampings of springs are
-# times, over their stiffness: to keep them while stiffness changes takes its inverse.
-_POWERS = {
-    "load.stiffness": (1, 0),
-    "load.damping": (-1, 1),
-    "mesh_stiffness": (1, 0),
-    "mesh_damping": (-1, 1),
-    "body.material.viscous_loss_factor": (0, 1),
-}
+# Powers of the factors of stiffness and of damping by which parameters besides the bearing's change. Damping of teeth
+# is a time, over their stiffness: to keep it while stiffness changes takes its inverse.
+_POWERS = {"mesh_stiffness": (1, 0), "mesh_damping": (-1, 1), "body.material.viscous_loss_factor": (0, 1)}
 _MOST = 0.5
 # Values along a way at which the largest growth is looked at before its zeros are found.
 _ALONG = 5
@@ -113,12 +108,19 @@ class Toleranced:
     @cached_property
     def changed(self) -> FaceGears:
         """The drive with the factors put in."""
-        gear = self.model.gear
+        gear, bearing = self.model.gear, self.model.gear.bearing_stiffness
         for name in parameter_names(gear):
             if name in _POWERS:
                 s, d = _POWERS[name]
                 factor = self.stiffness_factor**s * self.damping_factor**d
                 gear = replace_parameter(gear, name, factor * value_of(gear, name))
+        # The disk's stiffness by which a bearing is measured moves with its damping, if little.
+        load = replace(
+            gear.load,
+            stiffness=self.stiffness_factor * bearing / reference_stiffness(gear.body),
+            damping=gear.load.damping * self.damping_factor / self.stiffness_factor,
+        )
+        gear = replace(gear, load=load)
         return self.model.with_gear(gear)
 
     @property
