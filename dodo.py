@@ -280,10 +280,12 @@ def task_book() -> dict:
         "file_dep": [
             *(EXECUTED / notebook.name for notebook in NOTEBOOKS),
             *(path for path in files("book", "*") if CODE not in path.parents),
+            *files("facegear", "*.py"),  # their docstrings are a page
             *files("data/reference", "*.nc"),
             *VIGNETTES,
             ROOT / "data" / "contents.yaml",
             ROOT / "tools" / "pages.py",
+            ROOT / "tools" / "public_names.py",
             ROOT / "CITATION.cff",
             ROOT / "_config.yml",
             ROOT / "uv.lock",
