@@ -4,7 +4,7 @@
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -62,6 +62,36 @@ def figures_of(notebook: Path) -> list[BookFigure]:
             caption = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", figure["caption"])
             found.append(BookFigure(figure["name"], caption, notebook.stem))
     return found
+
+
+def numbers_of(cell: nbformat.NotebookNode, stored: Collection[str]) -> list[str]:
+    """Return the names of the stored arrays that a figure's cell shows, as far as cell and label tell.
+
+    Those that the cell hands to its chapter by name, or else those of the figure of the dissertation in its label.
+    """
+    figure = cell.metadata["mystnb"]["figure"]
+    named = re.findall(r'\bchapter\.figure\(\s*"(\w+)"', cell.source)
+    found = [name for name in dict.fromkeys(named) if name in stored]
+    label = re.fullmatch(r"fig-(\d+)-(\d+)([a-z]?)", figure.get("name", ""))
+    if not found and label:
+        name = f"ch{int(label[1]):02d}_figure_{label[1]}_{int(label[2]):02d}"
+        found = [known for known in sorted(stored) if re.fullmatch(name + (label[3] or "[a-z]?"), known)]
+    return found
+
+
+def offer_numbers(cell: nbformat.NotebookNode, stored: Collection[str]) -> None:
+    """Give the caption of a figure's cell links to the arrays it shows, unless its caption has some."""
+    figure = cell.metadata.get("mystnb", {}).get("figure", {})
+    if "caption" not in figure or ".nc" in figure["caption"]:
+        return
+    links = []
+    names = numbers_of(cell, stored)
+    for name in names:
+        part = re.fullmatch(r"ch\d+_figure_\d+_\d+([a-z])", name)
+        text = f"({part[1]})" if part else name.split("_", 1)[1].replace("_", " ")
+        links.append(f"{{download}}`{text if len(names) > 1 else 'netCDF'} <../data/{name}.nc>`")
+    if links:
+        figure["caption"] += f" Numbers: {', '.join(links)}."
 
 
 def counterparts(printed: PrintedFigure, figures: Iterable[BookFigure]) -> list[BookFigure]:

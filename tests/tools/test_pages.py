@@ -103,3 +103,45 @@ def test_bibtex_says_what_the_citation_file_says():
     assert text.count("{") == text.count("}")
     for value in (cff["title"], cff["version"], cff["references"][0]["title"], "Peng, Meng", "year = {2012}"):
         assert value in text
+
+
+def figure_cell(source, name="fig-x", caption="A map."):
+    cell = nbformat.v4.new_code_cell(source)
+    cell.metadata.mystnb = {"figure": {"name": name, "caption": caption}}
+    return cell
+
+
+@pytest.mark.parametrize(
+    ("cell", "names"),
+    [
+        (figure_cell('data = chapter.figure("ch02_swing", swing(1))'), ["ch02_swing"]),
+        (
+            figure_cell('chapter.figure(\n    "ch02_swing", a)\nchapter.figure("ch02_lost", b)'),
+            ["ch02_swing"],
+        ),
+        (figure_cell("draw(charts)", "fig-4-4"), ["ch04_figure_4_04a", "ch04_figure_4_04b"]),
+        (figure_cell("draw(charts)", "fig-4-4b"), ["ch04_figure_4_04b"]),
+        (figure_cell("draw(charts)", "fig-4-4-true"), []),
+        (figure_cell("draw(charts)", "fig-4-9"), []),
+        (figure_cell("draw(charts)"), []),
+    ],
+)
+def test_caption_offers_the_numbers_that_the_cell_shows(cell, names):
+    stored = {"ch02_swing", "ch04_figure_4_04a", "ch04_figure_4_04b", "ch04_figure_4_14"}
+    pages.offer_numbers(cell, stored)
+    caption = cell.metadata.mystnb.figure.caption
+    assert [word for word in stored if f"<../data/{word}.nc>" in caption] == [
+        word for word in stored if word in names
+    ]
+    assert caption.startswith("A map." + (" Numbers: {download}`" if names else ""))
+
+
+def test_caption_that_offers_numbers_itself_and_cells_without_figure_are_left_alone():
+    own = figure_cell(
+        'chapter.figure("ch02_swing", a)', caption="A map: {download}`x <../data/ch02_swing.nc>`."
+    )
+    plain = nbformat.v4.new_code_cell('chapter.figure("ch02_swing", a)')
+    for cell in (own, plain):
+        before = str(cell)
+        pages.offer_numbers(cell, {"ch02_swing"})
+        assert str(cell) == before
