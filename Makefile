@@ -31,7 +31,7 @@ chapter: environment ## execute and check one notebook: make chapter NAME=03_geo
 drive: environment ## report on a drive of your own: make drive FILE=my_drive.yaml
 	@test -n '$(FILE)' || { echo 'Say which file, for example: make drive FILE=data/drives/case_2.yaml'; exit 2; }
 	@test -f '$(FILE)' || { echo 'There is no file $(FILE)'; exit 2; }
-	@$(PYTHON) tools/run_drive.py '$(FILE)'
+	@$(PYTHON) -m facegear report '$(FILE)'
 
 # Tests are shared out by file: what those of one file share, such as a derivation, is computed once.
 test: environment ## run the tests (some minutes)

@@ -29,6 +29,10 @@ What is public stands in `__init__.pyi`, for editors and type checkers; it is lo
 `import facegear` itself costs next to nothing. Which package has what is said in each one's own docstring.
 """
 
+from importlib.metadata import version
+
 import lazy_loader
+
+__version__ = version("facegear")
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,5 +1,6 @@
 from .design.body import critical_thickness as critical_thickness
 from .drives.drive_file import read_drive_file as read_drive_file
+from .drives.drive_text import write_drive_file as write_drive_file
 from .floquet.hsu import resonance_bands as resonance_bands
 from .floquet.models import Excited as Excited
 from .floquet.models import WithoutRigidMotion as WithoutRigidMotion
@@ -43,6 +44,8 @@ from .support.parameters import MeshLoad as MeshLoad
 from .support.parameters import rad_per_s as rad_per_s
 from .support.parameters import rpm as rpm
 from .support.parameters import watt as watt
+
+__version__: str
 
 __all__ = [
     "STEEL",
@@ -90,4 +93,5 @@ __all__ = [
     "tongues",
     "transition_matrix",
     "watt",
+    "write_drive_file",
 ]

@@ -33,6 +33,9 @@ def described(detail: CellDetail, value: float, vertical: Quantity, speed: Quant
     return text
 
 
+# Names of coordinates beside one another in the legend of a panel.
+_NAMES_IN_ROW = 3
+
 RING: dict[str, Any] = {
     "markersize": 11,
     "markerfacecolor": "none",
@@ -125,4 +128,6 @@ def _draw_history(ax: Axes, history: xr.DataArray) -> None:
     ax.set(xlabel="time [periods]", ylabel="displacement", ylim=(-1.1, 1.1))
     ax.set_title("critical motion", fontsize=10)
     if len(names) > 1:
-        ax.legend(loc="upper left", fontsize=8, ncols=len(names), columnspacing=1.0, handlelength=1.6)
+        # Above the curves, in as many columns as fit the narrowest panel.
+        ax.set_ylim(-1.1, 1.35 if len(names) <= _NAMES_IN_ROW else 1.6)
+        ax.legend(loc="upper left", fontsize=8, ncols=_NAMES_IN_ROW, columnspacing=1.0, handlelength=1.6)

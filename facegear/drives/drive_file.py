@@ -10,7 +10,7 @@ import difflib
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -27,6 +27,7 @@ from facegear.drives.drive_keys import (
     Key,
 )
 from facegear.drives.flexible_teeth import FlexibleTeeth
+from facegear.drives.forces import RIM, pressed
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
 from facegear.mechanics.backlash import Backlash
@@ -78,6 +79,10 @@ class DriveFile:
         What each pinion does between two gears; None where there is one gear.
     play : Backlash or None
         The gearbox with play of its teeth, under the torque of one pinion's power; None where there is no play.
+    force_at : str
+        Where the driving force presses, one of :data:`facegear.drives.forces.PLACES`.
+    content : mapping
+        What the file says, as it says it: keys and values by section. No part of what makes two drives equal.
     """
 
     name: str
@@ -88,6 +93,8 @@ class DriveFile:
     teeth: FlexibleTeeth | None = None
     roles: tuple[Role, ...] | None = None
     play: Backlash | None = None
+    force_at: str = RIM
+    content: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def drive(self) -> Drive:
@@ -169,9 +176,10 @@ def parse_drive(content: bytes | str, source: str = "drive file") -> DriveFile:
         of its range, or impossible together with others.
     """
     try:
-        found = _checked(read_plain_yaml(content))
+        written = read_plain_yaml(content)
+        found = _checked(written)
         try:
-            return _built(found)
+            return replace(_built(found), content=written)
         except ValueError as error:
             raise ValueError(f"{error}{_guess(found)}") from None
     except (TypeError, ValueError) as error:
@@ -231,10 +239,10 @@ def _checked(content: Any) -> _Found:
         chosen[name] = {same[0].si_name: _chosen(name, same, entries) for same in section.quantities()}
         values[name] = {
             # A key without a value is a mistake, not the default.
-            quantity: _value(f"{name}.{key.name}", key, entries.get(key.name, key.default))
+            quantity: checked_value(f"{name}.{key.name}", key, entries.get(key.name, key.default))
             for quantity, key in chosen[name].items()
         }
-    return _Found(_value(NAME.name, NAME, content.get(NAME.name)), values, chosen)
+    return _Found(checked_value(NAME.name, NAME, content.get(NAME.name)), values, chosen)
 
 
 def _chosen(section: str, same: tuple[Key, ...], entries: Mapping[str, Any]) -> Key:
@@ -244,7 +252,7 @@ def _chosen(section: str, same: tuple[Key, ...], entries: Mapping[str, Any]) -> 
     if len(given) > 1:
         raise ValueError(f"{names.replace(' or ', ' and ')} say the same: give one of them")
     if not given and len(same) > 1:
-        raise ValueError(f"{names} is missing: {_plain(same[0].meaning)}; valid is {same[0].valid}")
+        raise ValueError(f"{names} is missing: {same[0].plain_meaning}; valid is {same[0].valid}")
     return given[0] if given else same[0]
 
 
@@ -270,10 +278,29 @@ def _check_keys(path: str, entries: Any, valid: Sequence[str]) -> None:
         raise ValueError(f"{prefix}{name} = {_shown(entries[key])} is no key of a drive file: {told}")
 
 
-def _value(path: str, key: Key, value: Any) -> Any:
-    """Value of a key in SI."""
+def checked_value(path: str, key: Key, value: Any) -> Any:
+    """Check the value of a key by itself.
+
+    Parameters
+    ----------
+    path : str
+        The key's dotted path, for messages.
+    key : Key
+    value : object
+        As plain YAML gives it; None where there is none.
+
+    Returns
+    -------
+    object
+        In SI; lists become tuples.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is missing, of the wrong type or out of the key's range.
+    """
     if value is None:
-        raise ValueError(f"{path} is missing: {_plain(key.meaning)}; valid is {key.valid}")
+        raise ValueError(f"{path} is missing: {key.plain_meaning}; valid is {key.valid}")
     if key.kind == "text":
         if not isinstance(value, str) or not value.strip() or len(value) > LONGEST_TEXT:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
@@ -343,11 +370,6 @@ def _cut(text: str) -> str:
     return text if len(text) <= LONGEST_TEXT else text[: LONGEST_TEXT - 1] + "…"
 
 
-def _plain(meaning: str) -> str:
-    """Documentation without its mathematics marks."""
-    return re.sub(r"[$\\]", "", meaning)
-
-
 # --- from numbers to models ---------------------------------------------------------------------------------------
 
 
@@ -388,7 +410,13 @@ def _built(found: _Found) -> DriveFile:
         )
         torque = requirements.power / requirements.pinion_speed * drive.gear_ratio
         play = _by_model(found, "gearbox", lambda: _play(gearbox, torsional, torque))
-    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles, play)
+    force_at = values["operation"]["force_at"]
+    _by_model(
+        found,
+        "operation",
+        lambda: [pressed(force_at, each, drive).points(drive) for each in contacts.values()],
+    )
+    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles, play, force_at)
 
 
 def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[int]:

@@ -11,8 +11,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
+from unicodedata import lookup
 
 from facegear.drives.flexible_teeth import CENTROID, SHARING
+from facegear.drives.forces import PLACES, RIM
 from facegear.geometry.drive import FEWEST_TEETH
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
 from facegear.mechanics.two_gears import DRIVES
@@ -43,6 +45,21 @@ PER_SI: Mapping[str, float] = MappingProxyType(
 # Value in SI is this divided by the value in the file.
 OVER_SI: Mapping[str, float] = MappingProxyType({"1/in": 25.4e-3})
 _UNIT_IN_NAME = re.compile(r"_(mm|um|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
+
+
+def plain(meaning: str) -> str:
+    r"""Give documentation without its marks, Greek letters as such.
+
+    Examples
+    --------
+    >>> plain(r"$\mu$, as `gearbox` has it")
+    'μ, as gearbox has it'
+    """
+    return re.sub(
+        r"\\([a-z]+)",
+        lambda found: lookup(f"GREEK SMALL LETTER {found[1].upper()}"),
+        re.sub(r"[$`]", "", meaning),
+    )
 
 
 @dataclass(frozen=True)
@@ -101,6 +118,11 @@ class Key:
     def from_si(self, value: float) -> float:
         """Value in the file of a value in SI."""
         return OVER_SI[self.unit] / value if self.unit in OVER_SI else value * PER_SI.get(self.unit, 1.0)
+
+    @property
+    def plain_meaning(self) -> str:
+        """Meaning without marks, Greek letters as such."""
+        return plain(self.meaning)
 
     @property
     def fewest(self) -> int:
@@ -304,6 +326,14 @@ _OPERATION = Section(
         Key("power_hp", "power of one pinion (745.69987 W)", "number", "hp", 1e-2, 1e5),
         Key("pinion_speed_rpm", "speed of the pinion at that power", "number", "rpm", 1.0, 1e6),
         Key("safety_factor", "safety factor against yielding (4-22)", "number", "", 1.0, 100.0, default=1.5),
+        Key(
+            "force_at",
+            "where the driving force of the power presses: one point of the rim, as printed (rim), or of the pitch "
+            "circle (pitch); face and root of one tooth (tooth), or of the tooth pairs in mesh (pairs, chapter 8)",
+            "choice",
+            default=RIM,
+            choices=PLACES,
+        ),
     ),
 )
 

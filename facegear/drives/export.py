@@ -19,38 +19,6 @@ from facegear.support.tables import write_table
 _MM = 1e3
 
 
-def results_directory(
-    output_directory: str | Path,
-    drive_file: str | Path,
-    data_directory: str | Path,
-    build_directory: str | Path,
-) -> Path:
-    """Return the folder that the files of a report go to.
-
-    Parameters
-    ----------
-    output_directory : str or Path
-        What the user asks for; empty to leave it open.
-    drive_file : str or Path
-        The drive file, which names the folder.
-    data_directory, build_directory : str or Path
-        Folders of the project as the notebook knows them.
-
-    Returns
-    -------
-    Path
-        `output_directory` if given. Else, where the notebook runs in its own folder, so that the project's folders are
-        where it looks for them, ``drives/<name of the file>`` in `build_directory`; anywhere else
-        ``<name of the file>_results`` in the current folder.
-    """
-    if str(output_directory):
-        return Path(output_directory)
-    name = Path(drive_file).stem
-    if Path(data_directory, "drives").is_dir():
-        return Path(build_directory, "drives", name)
-    return Path(f"{name}_results")
-
-
 def write_parts(
     parts: Mapping[str, Callable[[Path], object]], folder: str | Path
 ) -> tuple[tuple[Path, ...], dict[str, str]]:

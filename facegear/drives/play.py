@@ -1,13 +1,14 @@
-"""What becomes of the tongues of a gearbox whose teeth have play: motions that stay bounded, and how large they are.
+"""Motions of a gearbox whose teeth have play, and what becomes of its tongues: bounded or not, and how large.
 
 A linear gearbox in a tongue vibrates ever more. With play its flanks part, and from a state near rest the motion may
-settle. It is followed from the static deflection under the torque, at the speed where the tongue grows fastest.
+settle. It is followed from the static deflection under the torque; of a tongue, at the speed where it grows fastest.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -19,15 +20,18 @@ from facegear.floquet.transients import settled
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.backlash import Backlash
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import rpm
+from facegear.support.parameters import integer_at_least, rpm
 from facegear.support.types import FloatArray
 
 # Mesh periods that a motion is followed, at least and at most; growth by this power of e takes it far from rest.
 _FEWEST, _MOST, _POWERS = 400, 4000, 15.0
+# After so many it is looked at whether it has settled.
+_STEP = 50
 # Periods at the end that are looked at, and repetitions that are tried.
 _KEPT, _REPEATS = 24, (1, 2, 3, 4)
 # Beyond so many static deflections gap and torque are nothing, and a motion that still grows goes on growing.
 _LARGE = 1e3
+_FLANKS = ("stays pressed", "flanks part", "strikes back")
 # How near a motion that repeats itself must be to what was followed, over its size: Runge-Kutta steps are coarse.
 _NEAR = 0.05
 
@@ -50,21 +54,30 @@ def motions_in_tongues(play: Backlash, found: Sequence[Tongue], parameters: str)
         infinite where the motion grows beyond a thousand times ``at_rest``, that of the resting gearbox. Labels in
         ``label``, and in ``motion`` what it is: "repeats every 2 periods, flanks part" or the like.
     """
-    rows = [_motion(play, tongue) for tongue in found]
+    rows = [motion_from_rest(play, tongue.peak, _periods(play, tongue)) for tongue in found]
     size = partial(variable, units="µm", rtol=0.1, atol=0.1)
     return xr.Dataset(
         {
             "peak": variable("tongue", [rpm(tongue.peak) for tongue in found], "Speed", "rpm", atol=0.1),
-            "compression": size("tongue", [1e6 * row[0] for row in rows], "Largest compression of the teeth"),
+            "compression": size(
+                "tongue", [1e6 * row.compression for row in rows], "Largest compression of the teeth"
+            ),
             "at_rest": size((), 1e6 * _compression(play, _at_rest(play)), "Compression at rest"),
         },
         coords={
             "tongue": np.arange(len(rows)),
             "label": text("tongue", [tongue.label for tongue in found], "Label of the tongue"),
-            "motion": text("tongue", [row[1] for row in rows], "What the motion is"),
+            "motion": text("tongue", [row.words for row in rows], "What the motion is"),
         },
         attrs={"parameters": parameters},
     )
+
+
+def _periods(play: Backlash, tongue: Tongue) -> int:
+    """Mesh periods that take a motion in a tongue far from rest."""
+    period = play.pressed(tongue.peak).period
+    enough = _POWERS / (tongue.growth_rate * period)
+    return _STEP * math.ceil(min(max(enough, _FEWEST), _MOST) / _STEP)
 
 
 def _at_rest(play: Backlash) -> FloatArray:
@@ -81,35 +94,130 @@ def _compression(play: Backlash, displacements: FloatArray) -> FloatArray:
     return np.asarray(np.abs(play.torsional.deformation(displacements)) - play.gap / 2.0)
 
 
-def _motion(play: Backlash, tongue: Tongue) -> tuple[float, str]:
-    """Largest compression [m], and what the motion is."""
-    system, rest = play.system(tongue.peak), _at_rest(play)
-    periods = int(min(max(_POWERS / (tongue.growth_rate * system.period), _FEWEST), _MOST))
-    with np.errstate(over="ignore", invalid="ignore"):
-        ends = settled(system, np.concatenate([rest, np.zeros_like(rest)])[np.newaxis], periods, kept=_KEPT)[
-            :, 0
-        ]
-    seen = _compression(play, ends[:, : rest.size])
-    if not np.isfinite(ends).all() or seen.max() > _LARGE * _compression(play, rest):
-        return math.inf, "grows beyond a thousand times the compression at rest"
-    orbit = _repeating(system, ends)
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Where a gearbox with play ends that starts at rest under its torque.
+
+    Attributes
+    ----------
+    compression : float
+        Largest of the teeth of either flank [m], as periods begin where the motion is `irregular`, infinite where it
+        grows beyond a thousand times that at rest.
+    words : str
+        What it is: "repeats every 2 periods, flanks part" or the like.
+    orbit : Orbit or None
+        The motion that repeats itself, if it does.
+    ends : ndarray, shape (24, 2n)
+        States (q, q̇) as the last mesh periods end.
+    """
+
+    compression: float
+    words: str
+    orbit: Orbit | None
+    ends: FloatArray
+
+
+def motion_from_rest(play: Backlash, speed: float, periods: int = _FEWEST) -> Motion:
+    """Follow the motion from the static deflection under the torque.
+
+    Parameters
+    ----------
+    play : Backlash
+    speed : float
+        Ω2 [rad/s].
+    periods : int
+        Mesh periods that it is followed at most, a multiple of 50.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    ValueError
+        If `periods` is no multiple of 50.
+
+    Examples
+    --------
+    >>> from facegear.mechanics.gearboxes import FIGURES
+    >>> from facegear.support.parameters import rad_per_s
+    >>> play = Backlash(FIGURES["7.12a"].model(), torque=800.0, gap=1e-4)
+    >>> motion_from_rest(play, rad_per_s(700.0)).words
+    'repeats each period, stays pressed'
+    """
+    system, rest = play.system(speed), _at_rest(play)
+    if integer_at_least("periods", periods, _STEP) % _STEP:
+        raise ValueError(f"periods must be a multiple of {_STEP}, got {periods}")
+    state, orbit = np.concatenate([rest, np.zeros_like(rest)]), None
+    limit = _LARGE * float(_compression(play, rest))
+    for _ in range(periods // _STEP):
+        with np.errstate(over="ignore", invalid="ignore"):
+            ends = settled(system, state[np.newaxis], _STEP, kept=_KEPT)[:, 0]
+        state, seen = ends[-1], _compression(play, ends[:, : rest.size])
+        if not np.isfinite(ends).all() or seen.max() > limit:
+            return Motion(math.inf, "grows beyond a thousand times the compression at rest", None, ends)
+        # A motion that is near a stable one which repeats itself ends there; near an unstable one it goes on.
+        if (orbit := _repeating(system, ends)) is not None:
+            break
     if orbit is None:
-        return float(seen.max()), f"irregular, or not settled, after {periods} periods: seen as periods begin"
+        words = f"irregular, or not settled, after {periods} periods: seen as periods begin"
+        return Motion(float(seen.max()), words, None, ends)
     largest = float(orbit.response.extremes(lambda x: _compression(play, orbit.displacements(x)))[1])
-    flanks = (
-        "strikes back"
-        if play.strikes_back(orbit)
-        else "flanks part"
-        if play.parts(orbit)
-        else "stays pressed"
-    )
     count = "each period" if orbit.periods == 1 else f"every {orbit.periods} periods"
-    return largest, f"repeats {count}, {flanks}"
+    return Motion(largest, f"repeats {count}, {_FLANKS[_contact(play, orbit)]}", orbit, ends)
+
+
+def _contact(play: Backlash, orbit: Orbit) -> int:
+    """Whether flanks stay pressed, 0, part, 1, or the back flanks are struck as well, 2."""
+    return 2 if play.strikes_back(orbit) else int(play.parts(orbit))
+
+
+def motion_arrays(play: Backlash, orbits: Sequence[Orbit], points: int) -> xr.Dataset:
+    """Mesh deformation and its rate over the periods of some motions, the smallest first.
+
+    Parameters
+    ----------
+    play : Backlash
+    orbits : sequence of Orbit
+    points : int
+        Instants over the whole of each motion.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (motion, fraction): ``deformation`` [m], ``rate`` [m/s]; over ``motion``: ``contact``, 0 where flanks stay
+        pressed, 1 where they part, 2 where back flanks are struck, and ``periods``.
+    """
+    fraction, gearbox = np.linspace(0.0, 1.0, points), play.torsional
+
+    def whole(orbit: Orbit) -> tuple[FloatArray, FloatArray]:
+        motion = orbit.displacements(fraction), orbit.velocities(fraction)
+        return gearbox.deformation(motion[0]), gearbox.deformation(motion[1])
+
+    ordered = sorted(orbits, key=lambda orbit: float(whole(orbit)[0].max()))
+    deformation, rate = np.moveaxis(np.array([whole(orbit) for orbit in ordered]), 1, 0)
+    contact = [float(_contact(play, orbit)) for orbit in ordered]
+    both = ("motion", "fraction")
+    return xr.Dataset(
+        {
+            "deformation": variable(both, deformation, "Mesh deformation", units="m", rtol=1e-6, atol=1e-11),
+            "rate": variable(both, rate, "Its rate", units="m/s", rtol=1e-6, atol=1e-7),
+            "contact": variable("motion", contact, "0 pressed, 1 parts, 2 strikes back", units="1", atol=0.1),
+        },
+        {
+            "motion": np.arange(len(ordered)),
+            "fraction": fraction,
+            "periods": ("motion", [orbit.periods for orbit in ordered]),
+        },
+    )
 
 
 def _repeating(system: ClearanceSystem, ends: FloatArray) -> Orbit | None:
     """Motion that repeats itself and was followed, if there is one."""
     size = np.abs(ends).max(axis=0)
+    if all((np.abs(ends[-1] - ends[-1 - count]) > _NEAR * size).any() for count in _REPEATS):
+        return None
+    # In their order: what repeats itself every period does so every two.
     for count in _REPEATS:
         try:
             orbit = periodic_orbit(system, count, ends[-1])

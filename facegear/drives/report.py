@@ -31,6 +31,7 @@ from facegear.maps.tracing import Tongue
 from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
+from facegear.mechanics.spread_force import RIM_POINT
 from facegear.mechanics.transverse import FaceGears, nominal_pinion_mass
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s, rpm
@@ -114,7 +115,8 @@ def flutter(model: FaceGears, duty: Requirements) -> tuple[Row, ...]:
     Parameters
     ----------
     model : FaceGears
-        Drive in the basis of the report; of its pinions only their angles count, and which of them drive.
+        Drive in the basis of the report; of its pinions only their angles count, and which of them drive; of its force
+        where it presses, at the rim if there is none.
     duty : Requirements
         Power of each pinion, its speed, range of speed.
 
@@ -140,6 +142,7 @@ def flutter(model: FaceGears, duty: Requirements) -> tuple[Row, ...]:
                 angles=driving.angles,
                 senses=driving.senses,
                 highest_power=duty.power,
+                spread=model.gear.force.spread if model.gear.force else RIM_POINT,
             )
             for speed in duty.speeds
             for driving in model.driving

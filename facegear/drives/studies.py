@@ -1,18 +1,22 @@
-"""What the live explorers of the book explore: a drive, classical equations, a gearbox, flexible teeth."""
+"""What the live explorers of the book explore: drives, classical equations, gearboxes sound and damaged."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 from facegear.drives.explore import Choice, Quantity, Settings, Study
 from facegear.drives.flexible_teeth import CENTROID, FlexibleTeeth
+from facegear.drives.forces import RIM, pressed
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.classical import Mathieu, Meissner
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.edge_stiffness import DrivingForce
+from facegear.mechanics.edge_stiffness import DrivingForce, Following
+from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.sharing import RULES
@@ -21,7 +25,15 @@ from facegear.mechanics.transverse import Transverse
 from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, rad_per_s
 
+ModelT = TypeVar("ModelT", bound=Model)
+
 TREGOLD, TRUE_SWEEP = "Tregold, as printed", "true sweep"
+
+FOLLOWER, DEAD = "follows the rim", "keeps its direction"
+RIM_ONLY = "one point of the rim"
+_DIRECTIONS: dict[Following, str] = {"follower": FOLLOWER, "dead": DEAD}
+# The words of a reader for those of a drive file.
+PRESSED = {RIM_ONLY: RIM, "the pitch point": "pitch", "one tooth": "tooth", "the pairs in mesh": "pairs"}
 
 _RPM = float(rad_per_s(1.0))
 _DEGREE = math.pi / 180.0
@@ -75,17 +87,13 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
     Raises
     ------
     ValueError
-        If a value of the model lies outside the range of its control, or its contact ratio is neither of the two.
+        If a value of the model lies outside the range of its control, its contact ratio is neither of the two, or its
+        force presses elsewhere than can be chosen.
     """
     start = cases.FIGURES["4.4a"].model() if model is None else model
     body, drive, load = start.body, start.body.drive, start.load
     degrees = [math.degrees(angle) % 360.0 for angle in start.pinion_angles]
     degrees += [_SECOND, _THIRD][len(degrees) - 1 :]
-    horsepower = 0.0
-    if start.force is not None:
-        # The power control holds at the highest speed: the same force.
-        full = rad_per_s(highest_speed_rpm) / drive.speed_ratio
-        horsepower = start.force.power / start.force.pinion_speed * full / WATT_PER_HORSEPOWER
     clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
     ratio = next((name for name, value in clocks.items() if value == start.contact_ratio), None)
     if ratio is None:
@@ -133,16 +141,7 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
             when=("pinions", "3"),
         ),
         Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), ratio),
-        Quantity(
-            "power",
-            "power of a pinion at top speed [hp]",
-            0.0,
-            1500.0,
-            horsepower,
-            10.0,
-            unit=WATT_PER_HORSEPOWER,
-            parameter="power",
-        ),
+        *_force_controls(start.force, start.contact, drive, highest_speed_rpm),
     )
     return Study(controls, _drive_model, "stiffness", _speed(highest_speed_rpm))
 
@@ -156,7 +155,51 @@ def _drive_model(settings: Settings) -> Model:
         MeshLoad(settings["stiffness"], settings["damping"], settings["mass"]),
         pinion_angles=angles,
         contact=_contact(settings, drive),
-        force=DrivingForce(settings["power"], settings["highest_speed"] / drive.speed_ratio),
+        force=_force(settings, drive),
+    )
+
+
+def _force_controls(
+    force: DrivingForce | None, contact: Contact, drive: Drive, highest_speed_rpm: float
+) -> tuple[Quantity | Choice, ...]:
+    """Return the controls of the driving force, at first where that of a model is.
+
+    Raises
+    ------
+    ValueError
+        If its force presses elsewhere than a reader can choose.
+    """
+    at_top = float(rad_per_s(highest_speed_rpm)) / drive.speed_ratio
+    here = DrivingForce(0.0, at_top) if force is None else force
+    places = {name: pressed(place, contact, drive) for name, place in PRESSED.items()}
+    place = next((name for name, spread in places.items() if spread == here.spread), None)
+    if place is None:
+        raise ValueError(f"force of the model must press on {' or '.join(places)}, got {here.spread!r}")
+    # The power control holds at the highest speed: the same force.
+    horsepower = here.power / here.pinion_speed * at_top / WATT_PER_HORSEPOWER
+    return (
+        Quantity(
+            "power",
+            "power of a pinion at top speed [hp]",
+            0.0,
+            1500.0,
+            horsepower,
+            10.0,
+            unit=WATT_PER_HORSEPOWER,
+            parameter="power",
+        ),
+        Choice("force_at", "driving force on", tuple(PRESSED), place),
+        Choice("following", "direction of the force", (FOLLOWER, DEAD), _DIRECTIONS[here.following]),
+    )
+
+
+def _force(settings: Settings, drive: Drive) -> DrivingForce:
+    """Driving force of the power at top speed, as the reader wants it."""
+    return DrivingForce(
+        settings["power"],
+        settings["highest_speed"] / drive.speed_ratio,
+        following=next(key for key, words in _DIRECTIONS.items() if words == settings["following"]),
+        spread=pressed(PRESSED[settings["force_at"]], _contact(settings, drive), drive),
     )
 
 
@@ -206,30 +249,19 @@ def gearbox_study(
     """
     start = gearboxes.FIGURES["7.12a"].model() if model is None else model
 
-    def quantity(
-        name: str, label: str, lowest: float, highest: float, step: float, unit: float = 1.0
-    ) -> Quantity:
-        value = value_of(start, name) / unit
-        return Quantity(name, label, lowest, max(highest, value), value, step, unit, parameter=name)
-
     controls = (
-        quantity("gear_inertia", "gear inertia J₂/J₁", 1.0, 100.0, 1.0),
-        quantity("load_inertia", "load inertia Jₒ/J₁", 1.0, 100.0, 1.0),
-        quantity("input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
-        quantity("output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
-        quantity("mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
-        quantity("input_damping", "input damping c₁/k₁ [µs]", 0.0, 100.0, 0.5, 1e-6),
-        quantity("output_damping", "output damping c₂/k₂ [µs]", 0.0, 100.0, 0.5, 1e-6),
-        quantity("correction_factor", "correction of the mesh stiffness c_f", 0.05, 1.0, 0.05),
+        _quantity(start, "gear_inertia", "gear inertia J₂/J₁", 1.0, 100.0, 1.0),
+        _quantity(start, "load_inertia", "load inertia Jₒ/J₁", 1.0, 100.0, 1.0),
+        _quantity(start, "input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
+        _quantity(start, "input_damping", "input damping c₁/k₁ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        _quantity(start, "output_damping", "output damping c₂/k₂ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        _quantity(start, "correction_factor", "correction of the mesh stiffness c_f", 0.05, 1.0, 0.05),
     )
-    names = tuple(control.name for control in controls)
 
     def build(settings: Settings) -> Model:
-        changed = start
-        for name in names:
-            if name in settings:
-                changed = replace_parameter(changed, name, settings[name])
-        return changed
+        return _with_parameters(start, controls, settings)
 
     return Study(
         controls,
@@ -237,6 +269,92 @@ def gearbox_study(
         "input_damping",
         _speed(highest_speed_rpm),
     )
+
+
+def shafts_study(model: HeavyShafts | None = None, highest_speed_rpm: float = 1000.0) -> Study:
+    """Torsional vibration with shafts that have mass: their lengths, their modes, stiffness and damping (chapter 8).
+
+    Parameters
+    ----------
+    model : HeavyShafts, optional
+        With both lengths, and a :class:`facegear.mechanics.gearboxes.ProportionalGearbox`, where the controls stand at
+        first; that of Fig. 7.12(a) with shafts of 0.3 m if left out.
+    highest_speed_rpm : float
+        End of the speed axis [rpm of the face gear].
+
+    Returns
+    -------
+    Study
+    """
+    start = HeavyShafts(gearboxes.FIGURES["7.12a"].model(), 0.3, 0.3, modes=1) if model is None else model
+    controls = (
+        _quantity(start, "input_length", "length of the input shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
+        _quantity(start, "output_length", "length of the output shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
+        Quantity("modes", "modes of each shaft", 0, 6, start.modes, 1, whole=True),
+        _quantity(start, "input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
+        _quantity(start, "mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
+        _quantity(start, "input_damping", "input damping c₁/k₁ [µs]", 0.0, 100.0, 0.5, 1e-6),
+        _quantity(start, "output_damping", "output damping c₂/k₂ [µs]", 0.0, 100.0, 0.5, 1e-6),
+    )
+
+    def build(settings: Settings) -> Model:
+        return replace(_with_parameters(start, controls, settings), modes=settings["modes"])
+
+    return Study(controls, build, "output_length", _speed(highest_speed_rpm), columns=40, rows=20)
+
+
+def damage_study(model: Torsional | None = None, highest_speed_rpm: float = 1000.0) -> Study:
+    """Torsional vibration of a gearbox that loses stiffness: what is left of shafts and teeth (chapter 8).
+
+    Parameters
+    ----------
+    model : Torsional, optional
+        The intact gearbox, a :class:`facegear.mechanics.torsional.Gearbox`; that of Fig. 7.12(b) if left out.
+    highest_speed_rpm : float
+        End of the speed axis [rpm of the face gear].
+
+    Returns
+    -------
+    Study
+        Its damping coefficients stay what they are.
+    """
+    start = Torsional(gearboxes.FIGURES["7.12b"].gearbox.in_si) if model is None else model
+    parts = {"input_stiffness": "input shaft", "output_stiffness": "output shaft", "mesh_stiffness": "teeth"}
+    controls = tuple(
+        Quantity(
+            name,
+            f"stiffness left, {part} [%]",
+            20.0,
+            100.0,
+            100.0,
+            1.0,
+            value_of(start, name) / 100.0,
+            parameter=name,
+        )
+        for name, part in parts.items()
+    )
+
+    def build(settings: Settings) -> Model:
+        return _with_parameters(start, controls, settings)
+
+    return Study(controls, build, "mesh_stiffness", _speed(highest_speed_rpm))
+
+
+def _quantity(
+    start: Model, name: str, label: str, lowest: float, highest: float, step: float, unit: float = 1.0
+) -> Quantity:
+    """Return the control of a parameter, at first where that of a model is."""
+    value = value_of(start, name) / unit
+    return Quantity(name, label, lowest, max(highest, value), value, step, unit, parameter=name)
+
+
+def _with_parameters(start: ModelT, controls: Sequence[Quantity], settings: Settings) -> ModelT:
+    """Return a model with what the reader has set of its parameters."""
+    for control in controls:
+        if control.parameter is not None and control.name in settings:
+            start = replace_parameter(start, control.parameter, settings[control.name])
+    return start
 
 
 ALONE, FRONT, BOTH, BETWEEN = "one", "two on one face", "one on either face", "one between two gears"
@@ -315,6 +433,7 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
         _thickness(body),
         _bearing_stiffness(load),
         _pinion_mass(load, 0.05),
+        *_force_controls(start.force, start.contact, body.drive, highest_speed_rpm),
     )
 
     def build(settings: Settings) -> Model:
@@ -332,6 +451,7 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
             (0.0, settings["second_angle"]) if pinions in (FRONT, BOTH) else (0.0,),
             teeth.contact(_contact(settings, drive), drive),
         )
+        gear = replace(gear, force=_force(settings, drive))
         return TwoGears(gear) if pinions == BETWEEN else gear
 
     return Study(controls, build, "mesh_stiffness", _speed(highest_speed_rpm))

@@ -9,8 +9,6 @@ that is raised until its unstable speeds stand still (:mod:`facegear.drives.basi
 
 from __future__ import annotations
 
-import html
-import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -19,6 +17,7 @@ import numpy as np
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID
+from facegear.drives.forces import in_words, pressed
 from facegear.floquet.modes import mean_growth_rate
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import Tongue
@@ -71,7 +70,8 @@ def driven(file: DriveFile, following: Following, contact: Contact) -> FaceGears
     contact : Contact
     """
     duty, gear = file.requirements, file.transverse.gear
-    force = DrivingForce(duty.power, duty.pinion_speed, following, complete_harmonics(gear.body))
+    spread = pressed(file.force_at, contact, file.drive)
+    force = DrivingForce(duty.power, duty.pinion_speed, following, complete_harmonics(gear.body), spread)
     return file.transverse.with_gear(replace(gear, contact=contact, force=force))
 
 
@@ -157,7 +157,7 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     gears = "" if file.roles is None else f" between two gears ({', '.join(file.roles)})"
     where = (
         f"from {low} to {high} rpm under the driving force of {1e-3 * duty.power:.4g} kW a {each} at "
-        f"{rpm(duty.pinion_speed):.4g} rpm of the pinion, on {teeth} teeth{gears}"
+        f"{rpm(duty.pinion_speed):.4g} rpm of the pinion, pressing {in_words(file.force_at)}, on {teeth} teeth{gears}"
     )
     shares = {case: case.found.unstable_share for case in computed}
     unstable = [case for case in computed if shares[case] > 0.0]
@@ -266,25 +266,3 @@ def _left_out(file: DriveFile) -> str:
         f"Not included: {', '.join(missing)}. The driving force is the same at all speeds; all parameters are taken as "
         "exact; speeds outside the range are not looked at."
     )
-
-
-def as_html(words: str) -> str:
-    """Text from a file as HTML that shows it and does nothing else.
-
-    Markup and formulas in it stay as they are written; line breaks and other control characters become blanks.
-
-    Parameters
-    ----------
-    words : str
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> as_html("A <b> & $x$")
-    '<span class="tex2jax_ignore mathjax_ignore">A &lt;b&gt; &amp; $x$</span>'
-    """
-    visible = "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Zl", "Zp") else c for c in words)
-    return f'<span class="tex2jax_ignore mathjax_ignore">{html.escape(visible)}</span>'

@@ -11,9 +11,11 @@ import io
 import os
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal, Protocol, TypeVar
 
@@ -141,8 +143,31 @@ def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
     from threadpoolctl import threadpool_limits
 
+    _end_with_parent()
     with threadpool_limits(limits=1):
         return function(*arguments)
+
+
+@cache
+def _end_with_parent() -> None:
+    """End this process, if joblib started it on this machine, within a second after the one that did has gone.
+
+    joblib's own workers go on when their parent is killed: with what they are at, and then waiting for more.
+    """
+    from multiprocessing import current_process, parent_process
+
+    starter = parent_process()
+    if starter is None or not current_process().name.startswith("LokyProcess"):
+        return
+    # Not whoever is the parent now: the one that started this process may be gone already.
+    parent = starter.pid
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def _in_parallel(

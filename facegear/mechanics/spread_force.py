@@ -214,15 +214,39 @@ class FaceStrip(Spread):
                 f"root_thickness must be less than the pitch of the teeth at their inner radius, {pitch:.6g} m, "
                 f"got {self.root_thickness!r} m"
             )
-        along, part = np.polynomial.legendre.leggauss(_ALONG)
-        inner = drive.inner_radius / drive.outer_radius
-        radius, share = (1.0 + inner) / 2 + (1.0 - inner) / 2 * along, part / 2
-        if self.root_thickness == 0.0:
-            return PressedPoints(radius, np.zeros(_ALONG), share)
-        across, weight = np.polynomial.legendre.leggauss(_ACROSS)
-        half = self.root_thickness / (2 * drive.outer_radius)
-        angle = half * across / radius[:, np.newaxis]
-        return PressedPoints(np.repeat(radius, _ACROSS), angle.ravel(), np.outer(share, weight / 2).ravel())
+        return _strip(drive, self.root_thickness)
+
+
+def _strip(drive: Drive, root_thickness: float) -> PressedPoints:
+    """Face of one tooth and its root, pressed equally hard everywhere."""
+    along, part = np.polynomial.legendre.leggauss(_ALONG)
+    inner = drive.inner_radius / drive.outer_radius
+    radius, share = (1.0 + inner) / 2 + (1.0 - inner) / 2 * along, part / 2
+    if root_thickness == 0.0:
+        return PressedPoints(radius, np.zeros(_ALONG), share)
+    across, weight = np.polynomial.legendre.leggauss(_ACROSS)
+    half = root_thickness / (2 * drive.outer_radius)
+    angle = half * across / radius[:, np.newaxis]
+    return PressedPoints(np.repeat(radius, _ACROSS), angle.ravel(), np.outer(share, weight / 2).ravel())
+
+
+@dataclass(frozen=True)
+class ToothRoot(Spread):
+    """Face width and root of one tooth on the pinion's axis.
+
+    The root is as thick as that of the rack (:func:`root_thickness`); from pressure angles of about 27° on, where roots
+    so thick would meet at the inner radius, as thick as the pitch of the teeth there.
+
+    Examples
+    --------
+    >>> drive = Drive(26, 130, 3.175e-3)
+    >>> bool(np.all(ToothRoot().points(drive).angle == FaceStrip(root_thickness(drive)).points(drive).angle))
+    True
+    """
+
+    def points(self, drive: Drive) -> PressedPoints:
+        """Gauss nodes over face and root."""
+        return _strip(drive, min(root_thickness(drive), drive.inner_radius * drive.angular_pitch))
 
 
 @dataclass(frozen=True)

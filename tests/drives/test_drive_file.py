@@ -13,12 +13,14 @@ from hypothesis import strategies as st
 
 from facegear.drives.drive_file import DriveFile, DriveFileError, parse_drive, read_drive_file
 from facegear.drives.drive_keys import NAME, SECTIONS
+from facegear.drives.forces import pressed
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.sharing import shared_load
+from facegear.mechanics.spread_force import root_thickness
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import rad_per_s
@@ -289,6 +291,32 @@ class TestPlay:
     def test_what_does_not_go_together_is_refused(self, keys, told):
         with pytest.raises(DriveFileError, match=told):
             parse_drive(GEARBOX.replace("gearbox:\n", f"gearbox:\n  {keys}\n"))
+
+
+class TestPlaceOfTheForce:
+    def test_the_rim_unless_another_place_is_given(self):
+        assert parse_drive(CASE_1).force_at == "rim"
+        assert parse_drive(CASE_1.replace("power_kW", "force_at: pairs\n  power_kW")).force_at == "pairs"
+
+    def test_an_unknown_place_is_refused(self):
+        told = refusal(CASE_1.replace("power_kW", "force_at: tip\n  power_kW"))
+        assert told == "operation.force_at must be rim or pitch or tooth or pairs, got 'tip'"
+
+    @pytest.mark.parametrize("place", ["tooth", "pairs"])
+    def test_roots_that_meet_are_as_thick_as_the_pitch(self, place):
+        """At 30° roots as thick as the rack's would overlap at R1."""
+        text = CASE_1.replace("module_mm", "pressure_angle_deg: 30\n  module_mm")
+        text = text.replace("pinion_teeth: 26", "pinion_teeth: 40").replace(
+            "gear_teeth: 130", "gear_teeth: 150"
+        )
+        found = parse_drive(text.replace("power_kW", f"force_at: {place}\n  power_kW"))
+        drive = found.drive
+        pitch = drive.inner_radius * drive.angular_pitch
+        assert root_thickness(drive) > pitch
+        points = pressed("tooth", found.transverse.contact, drive).points(drive)
+        assert np.ptp(points.radius * points.angle) * drive.outer_radius == pytest.approx(
+            pitch * np.polynomial.legendre.leggauss(4)[0][-1], rel=1e-9
+        )
 
 
 class TestTwoGears:

@@ -29,6 +29,7 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import shape_vector
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
+from facegear.mechanics.spread_force import FaceStrip, PitchPoint
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
 
@@ -154,7 +155,7 @@ THREE = Transverse(
     MeshLoad(0.3, 2e-6, 0.7),
     pinion_angles=(0.0, 2.0, 4.0),
     contact=Contact(contact_ratio=cases.CASE_2.drive.geometric_contact_ratio),
-    force=DrivingForce(3e5, 500.0),
+    force=DrivingForce(3e5, 500.0, "dead", spread=PitchPoint()),
 )
 
 
@@ -171,6 +172,14 @@ def test_controls_of_a_drive_stand_at_first_where_its_model_does(start):
         assert a.shape(0.3) == pytest.approx(b.shape(0.3), rel=1e-9)
 
 
+def test_a_force_on_places_that_cannot_be_chosen_is_refused():
+    elsewhere = replace(THREE, force=replace(THREE.force, spread=FaceStrip()))
+    with pytest.raises(
+        ValueError, match=r"force of the model must press on one point of the rim or .*, got FaceStrip"
+    ):
+        studies.drive_study(elsewhere)
+
+
 def fingerprint(model, speed):
     system = model.system(speed)
     parts = [system.mass, system.damping, system.stiffness, np.array([system.period])]
@@ -185,7 +194,9 @@ STUDIES = {
     "drive": (studies.drive_study(THREE), {}, 60.0),
     "oscillator": (studies.oscillator_study(), {"wave": studies.SQUARE}, 1.9),
     "gearbox": (studies.gearbox_study(), {}, 60.0),
-    "teeth": (studies.teeth_study(), {"pinions": studies.BOTH}, 60.0),
+    "shafts": (studies.shafts_study(), {}, 60.0),
+    "damage": (studies.damage_study(), {}, 60.0),
+    "teeth": (studies.teeth_study(), {"pinions": studies.BOTH, "power": 300.0}, 60.0),
 }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from facegear import Drive
-from facegear.drives.export import results_directory, write_points, write_stl
+from facegear.drives.export import write_points, write_stl
 from facegear.geometry.solids import LEAST_LAND, Mesh, tooth_surface, volume
 
 DRIVES = {
@@ -201,11 +201,3 @@ def test_what_cannot_be_exported_is_refused(tmp_path):
         tooth_surface(DRIVES["case_1"], 1, 5)
     with pytest.raises(TypeError, match="across must be an integer"):
         tooth_surface(DRIVES["case_1"], 5, 5.0)
-
-
-def test_results_go_where_the_reader_looks(tmp_path):
-    data, build = tmp_path / "data", tmp_path / "build"
-    assert str(results_directory("", "../a/my_drive.yaml", data, build)) == "my_drive_results"
-    (data / "drives").mkdir(parents=True)
-    assert results_directory("", "../a/my_drive.yaml", data, build) == build / "drives" / "my_drive"
-    assert results_directory(tmp_path / "here", "my_drive.yaml", data, build) == tmp_path / "here"

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from facegear.drives.play import motions_in_tongues
+from facegear.drives.play import motion_arrays, motion_from_rest, motions_in_tongues
 from facegear.floquet.labels import Combination
+from facegear.floquet.orbits import periodic_orbit
+from facegear.floquet.response import steady_response
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import FIGURES
+from facegear.plotting.motions import motions
 from facegear.support.parameters import rad_per_s
 
 PLAY = Backlash(FIGURES["7.12a"].model(), torque=800.0, gap=1e-4)
@@ -47,6 +50,39 @@ def test_what_grows_whatever_the_gap_is_told():
     found = motions_in_tongues(soft, [tongue(147.575, 48.7)], "")
     assert found.motion.values.tolist() == ["grows beyond a thousand times the compression at rest"]
     assert np.isinf(found.compression.values).all()
+
+
+def test_a_motion_from_rest_under_a_large_torque_is_that_of_the_linear_gearbox():
+    """With a constant arm the gap does nothing but turn gear and load on by its half."""
+    play = replace(PLAY, torsional=FIGURES["7.12a"].model(arm="conjugate"))
+    speed = float(rad_per_s(500.0))
+    found = motion_from_rest(play, speed)
+    assert found.words == "repeats each period, stays pressed"
+    linear = steady_response(play.pressed(speed)).displacements(np.linspace(0.0, 1.0, 40))
+    shown = motion_arrays(play, [found.orbit], 40)
+    expected = play.torsional.deformation(linear) + play.gap / 2.0
+    assert shown.deformation.values[0] == pytest.approx(expected, rel=1e-6)
+    assert (shown.contact.values, shown.periods.values) == (0.0, 1)
+
+
+def test_motions_are_in_order_of_size_and_their_rate_is_a_slope():
+    near, far = (float(rad_per_s(speed)) for speed in (750.0, 700.0))
+    small, large = sorted(
+        (periodic_orbit(PLAY.system(speed)) for speed in (near, far)),
+        key=lambda orbit: PLAY.deformation(orbit, np.linspace(0.0, 1.0, 400)).max(),
+    )
+    data = motion_arrays(PLAY, [large, small], 401)
+    for orbit, row in zip((small, large), data.deformation.values, strict=True):
+        assert row[0] == pytest.approx(float(PLAY.deformation(orbit, 0.0)), rel=1e-12)
+        assert row[0] == pytest.approx(row[-1], abs=1e-12)
+        period, rate = (
+            orbit.system.system.period,
+            PLAY.torsional.deformation(orbit.velocities(data.fraction.values)),
+        )
+        slope = np.gradient(row, data.fraction.values * period)
+        assert np.median(np.abs(slope - rate)) < 0.02 * np.abs(rate).max()
+    figure = motions(data, PLAY.gap)
+    assert [axes.get_xlabel() for axes in figure.axes] == ["mesh periods", "mesh deformation [µm]"]
 
 
 def test_no_tongue_is_no_row():

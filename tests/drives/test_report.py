@@ -16,6 +16,7 @@ from facegear.drives.drive_file import read_drive_file
 from facegear.drives.verdict import Case, driven
 from facegear.maps.tracing import tongues
 from facegear.mechanics.mode_shapes import plate_modes
+from facegear.mechanics.spread_force import PitchPoint, RimPoint
 from facegear.support.parameters import rad_per_s, rpm
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
@@ -50,6 +51,7 @@ def test_strength_follows_duty_and_material():
 
 FOLLOWER = "critical power of a pinion, disk alone, force follows the rim"
 DEAD = "critical power of a pinion, disk alone, force keeps its direction"
+POINTS = {"rim": RimPoint(), "pitch": PitchPoint()}
 RATIO = "critical power over power of a pinion, force follows the rim"
 
 
@@ -78,6 +80,21 @@ def test_two_pinions_flutter_at_half_the_power_of_each():
     # First order, in closed form: the mean shear of p forces is p times that of one.
     first = float(mode_critical_powers(both.body, duty.pinion_speed).min())
     assert together[FOLLOWER] == pytest.approx(1e-3 * first / 2, rel=0.01)
+
+
+@pytest.mark.slow
+def test_a_force_at_the_pitch_circle_flutters_at_the_power_of_its_first_order():
+    """In closed form; on the pairs in mesh chapter 8 anchors 1.08 to 1.14 times the power at the rim."""
+    contact = CASE_1.contacts["Tregold"]
+    found = {}
+    for place in ("rim", "pitch", "pairs"):
+        model = driven(replace(CASE_1, force_at=place), "follower", contact)
+        found[place] = values(report.flutter(model, CASE_1.requirements))[FOLLOWER]
+    body, speed = CASE_1.transverse.body, CASE_1.requirements.pinion_speed
+    first = {place: mode_critical_powers(body, speed, spread).min() for place, spread in POINTS.items()}
+    for place, power in first.items():
+        assert found[place] == pytest.approx(1e-3 * power, rel=0.01)
+    assert 1.08 < found["pairs"] / found["rim"] < 1.14
 
 
 def test_between_two_gears_the_one_that_all_meshes_drive_flutters_first():

@@ -1,18 +1,16 @@
 """Verdict on a drive: driving force, contact ratio, basis, in words."""
 
-import html.parser
 import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from facegear.drives import verdict
 from facegear.drives.basis import BasisStep, SettledTongues
 from facegear.drives.drive_file import read_drive_file
+from facegear.drives.forces import PLACES
 from facegear.floquet.labels import Combination
 from facegear.floquet.modes import mean_growth_rate
 from facegear.floquet.multipliers import growth_rate
@@ -58,6 +56,33 @@ class TestDrivenModel:
             EXAMPLE_B.requirements.pinion_speed,
         )
         assert (model.force.following, model.force.harmonics, model.contact_ratio) == ("dead", 6, 1.6)
+
+    @pytest.mark.parametrize("name", ["Tregold", "true sweep"])
+    def test_force_presses_where_the_file_says(self, name):
+        contact, drive = CASE_1.contacts[name], CASE_1.drive
+        points = {}
+        for place in PLACES:
+            force = verdict.driven(replace(CASE_1, force_at=place), "follower", contact).force
+            points[place] = force.spread.points(drive)
+            assert points[place].share.sum() == pytest.approx(1.0, rel=1e-12)
+        assert (points["rim"].radius, points["rim"].angle) == (1.0, 0.0)
+        # N2 m/2 over the outer radius.
+        at_pitch = 130 * 3.175e-3 / 2 / drive.outer_radius
+        assert points["pitch"].radius == pytest.approx([at_pitch], rel=1e-12)
+        for place in ("tooth", "pairs"):
+            radius = points[place].radius
+            assert radius.min() > drive.inner_radius / drive.outer_radius
+            assert radius.max() < 1.0
+        # Pairs enter and leave with the clock: with more of them in mesh they reach further from the axis.
+        reach = np.ptp(points["pairs"].angle) - np.ptp(points["tooth"].angle)
+        assert reach == pytest.approx(contact.ratio(drive) * drive.angular_pitch, rel=0.15)
+
+    def test_pairs_of_a_contact_under_load_bear_what_the_load_gives_them(self):
+        name, contact = next(iter(LOCALIZED.contacts.items()))
+        force = verdict.driven(replace(LOCALIZED, force_at="pairs"), "dead", contact).force
+        points = force.spread.points(LOCALIZED.drive)
+        assert name == "contact under load"
+        assert points.share.sum() == pytest.approx(1.0, rel=1e-9)
 
     def test_both_gears_have_the_force_of_each_mesh(self):
         model = verdict.driven(TWO_GEARS, "dead", TWO_GEARS.contacts["Tregold"])
@@ -204,28 +229,3 @@ class TestWords:
 
 def stable_or(intervals):
     return case("Tregold", "follower", *intervals).found.tongues
-
-
-class Reader(html.parser.HTMLParser):
-    """Reads a piece of HTML: its elements and its text."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.elements, self.text = [], ""
-        self.feed(page)
-        self.close()
-
-    def handle_starttag(self, tag, attributes):
-        self.elements.append(tag)
-
-    def handle_data(self, data):
-        self.text += data
-
-
-@given(st.text(min_size=1, max_size=80))
-def test_text_of_a_file_stays_text(words):
-    read = Reader(verdict.as_html(words))
-    assert read.elements == ["span"]
-    assert len(read.text) == len(words)
-    assert all(shown in (given_, " ") for shown, given_ in zip(read.text, words, strict=True))
-    assert "\n" not in read.text

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from facegear.support.files import file_stem, written_whole
+from facegear.support.files import file_stem, folder_written_whole, written_whole
 
 
 def test_a_file_appears_when_all_is_written(tmp_path):
@@ -63,3 +63,34 @@ def test_any_text_gives_a_name_of_a_file(tmp_path, text):
 def test_names_that_are_safe_can_be_read():
     assert file_stem("transverse, true sweep") == "transverse_true_sweep"
     assert file_stem("Zahnrad für Prüfstand 2") == "zahnrad_fur_prufstand_2"
+
+
+def interrupted(path):
+    with folder_written_whole(path) as place:
+        (place / "one.txt").write_text("2")
+        raise KeyboardInterrupt
+
+
+def test_a_folder_appears_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "a" / "results"
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(path)
+    assert not list((tmp_path / "a").iterdir())
+    with folder_written_whole(path) as place:
+        (place / "one.txt").write_text("1")
+        assert not path.exists()
+    assert [file.name for file in path.iterdir()] == ["one.txt"]
+
+
+def test_a_folder_that_is_there_keeps_what_is_not_replaced(tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    (tmp_path / "one.txt").write_text("0")
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(tmp_path)
+    assert (tmp_path / "one.txt").read_text() == "0"
+    with folder_written_whole(tmp_path) as place:
+        (place / "one.txt").write_text("1")
+    assert {file.name: file.read_text() for file in tmp_path.iterdir()} == {
+        "mine.txt": "mine",
+        "one.txt": "1",
+    }

@@ -14,7 +14,8 @@ PAGES = [ROOT / "README.md", *(ROOT / "book").glob("*.md"), *(ROOT / "notebooks"
 
 
 def test_there_are_as_many_as_one_can_learn():
-    assert 18 <= len(facegear.__all__) <= 46
+    # 46, and `write_drive_file` beside `read_drive_file`, `assess` for the question that a gearbox is built on.
+    assert 18 <= len(facegear.__all__) <= 49
 
 
 @pytest.mark.parametrize("name", facegear.__all__)

@@ -26,8 +26,10 @@ def test_the_engine_reruns_every_chapter_that_computes_stability():
     assert "03_geometry_and_meshing" not in found
 
 
-def test_every_module_is_imported_by_a_notebook_or_a_tool():
-    used = {path for notebook in NOTEBOOKS for path in imported_by(notebook)}
+def test_every_module_is_imported_by_a_notebook_a_tool_or_the_command():
+    command = ROOT / "facegear" / "__main__.py"
+    used = {command, *imported_by(command)}
+    used |= {path for notebook in NOTEBOOKS for path in imported_by(notebook)}
     used |= {path for tool in (ROOT / "tools").glob("*.py") for path in imported_by(tool)}
     modules = {path for folder in ("facegear", "book/compendium") for path in (ROOT / folder).rglob("*.py")}
     assert modules - used == set()

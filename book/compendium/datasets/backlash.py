@@ -114,42 +114,6 @@ def torque_response(
     return branch, _response(model, {"from above": branch}, at, ("torque", shown, clear), largest)
 
 
-def motions(model: Backlash, orbits: Sequence[Orbit], points: int) -> xr.Dataset:
-    """Mesh deformation and its rate over the periods of some motions, the smallest first.
-
-    Parameters
-    ----------
-    model : Backlash
-    orbits : sequence of Orbit
-    points : int
-        Instants over the whole of each motion.
-    """
-    fraction = np.linspace(0.0, 1.0, points)
-
-    def whole(orbit: Orbit) -> tuple[FloatArray, FloatArray]:
-        gearbox = model.torsional
-        return gearbox.deformation(orbit.displacements(fraction)), gearbox.deformation(
-            orbit.velocities(fraction)
-        )
-
-    ordered = sorted(orbits, key=lambda orbit: float(whole(orbit)[0].max()))
-    deformation, rate = np.moveaxis(np.array([whole(orbit) for orbit in ordered]), 1, 0)
-    contact = [statistics(model, orbit)[4] for orbit in ordered]
-    both = ("motion", "fraction")
-    return xr.Dataset(
-        {
-            "deformation": variable(both, deformation, "Mesh deformation", units="m", rtol=1e-6, atol=1e-11),
-            "rate": variable(both, rate, "Its rate", units="m/s", rtol=1e-6, atol=1e-7),
-            "contact": variable("motion", contact, "0 pressed, 1 parts, 2 strikes back", units="1", atol=0.1),
-        },
-        {
-            "motion": np.arange(len(ordered)),
-            "fraction": fraction,
-            "periods": ("motion", [orbit.periods for orbit in ordered]),
-        },
-    )
-
-
 def _response(
     model: Backlash,
     branches: Mapping[str, Branch],

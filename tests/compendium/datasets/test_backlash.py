@@ -81,30 +81,6 @@ def test_figures_name_what_they_show(curves):
     assert "derived" in texts(draw.growth({"derived": curve}))
 
 
-def test_motions_are_in_order_of_size_and_begin_where_they_begin(branch):
-    small, large = branch.orbits[0], branch.orbits[-1]
-    data = arrays.motions(PLAY, [large, small], 101)
-    assert data.deformation.values.max(axis=1).tolist() == sorted(
-        data.deformation.values.max(axis=1).tolist()
-    )
-    for orbit, row in zip((small, large), data.deformation.values, strict=True):
-        assert any(
-            abs(float(PLAY.deformation(orbit, 0.0)) - start) < 1e-15
-            for start in data.deformation.values[:, 0]
-        )
-        assert row[0] == pytest.approx(row[-1], abs=1e-12)
-    # The rate is the slope of the deformation, over the mesh period of each.
-    slope = (
-        np.gradient(data.deformation.values[0], data.fraction.values)
-        * 107
-        * float(rad_per_s(1.0))
-        / (2 * np.pi)
-    )
-    speeds = slope[5:-5] / data.rate.values[0][5:-5]
-    assert np.median(1.0 / speeds) == pytest.approx(735.0, abs=30.0)
-    assert draw.motions(data, PLAY.gap).axes[1].get_xlabel() == "mesh deformation [µm]"
-
-
 def test_torque_is_followed_down_from_the_largest():
     torques = np.array([1900.0, 1950.0, 2000.0])
     followed_down, data = arrays.torque_response(PLAY, 740.0, torques, 1e-3)

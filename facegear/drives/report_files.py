@@ -1,0 +1,166 @@
+"""The report on a drive as files: the page, and tables, arrays and meshes beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from facegear.drives import export, report
+from facegear.drives.findings import Findings
+from facegear.drives.page import Listing, Paragraph, Section, attempted, page
+from facegear.drives.sections import SECTIONS
+from facegear.geometry import solids
+from facegear.support import labelled
+from facegear.support.files import file_stem, folder_written_whole
+from facegear.support.tables import write_table
+
+PAGE = "report.html"
+"""Name of the page among the files of a report."""
+
+_FILES = "Files"
+
+
+def results_directory(drive_file: str | Path) -> Path:
+    """Return the folder that a report goes to if none is named: beside the drive file.
+
+    Examples
+    --------
+    >>> results_directory("drives/my_drive.yaml").as_posix()
+    'drives/my_drive_results'
+    """
+    path = Path(drive_file)
+    return path.with_name(f"{path.stem}_results")
+
+
+def parts_of(found: Findings) -> dict[str, Callable[[Path], object]]:
+    """Files of a report but for its page: name to what writes it, tables first, meshes last.
+
+    Parameters
+    ----------
+    found : Findings
+
+    Returns
+    -------
+    dict of str to callable
+        For :func:`facegear.drives.export.write_parts`. What has not been computed is computed when it is written.
+    """
+    file = found.file
+    tables: dict[str, Callable[[], Mapping[str, Any]]] = {
+        "summary": lambda: report.summary_columns(summary(found)),
+        "natural_frequencies": lambda: report.frequency_columns(found.modes),
+        "tongues": lambda: report.tongue_columns(found.tongue_tables),
+        "safe_windows": lambda: report.window_columns(found.windows),
+        "bases": lambda: report.basis_columns(found.bases),
+        "changes": lambda: report.change_columns(found.effects),
+    }
+    arrays: dict[str, Callable[[], xr.Dataset | None]] = {
+        "bases": lambda: found.bases,
+        "modes": lambda: found.modes,
+        "campbell": lambda: found.campbell,
+        "map_follower": lambda: found.map_follower,
+        "map_dead": lambda: found.map_dead,
+    }
+    if file.torsional is not None:
+        arrays["torsional_map"] = lambda: found.torsional_map
+    if file.play is not None and found.torsional_tongues:
+        arrays["play"] = lambda: found.play
+    for name, table in found.tongue_tables.items():
+        arrays[f"tongues_{file_stem(name)}"] = partial(_same, table)
+    drive = file.drive
+    title = f"face-gear tooth, N1={drive.pinion_teeth} N2={drive.gear_teeth}"
+    return {
+        **{f"{name}.csv": partial(_write_columns, columns) for name, columns in tables.items()},
+        **{f"{name}.nc": partial(_write_arrays, made) for name, made in arrays.items()},
+        "tooth_points_mm.csv": lambda path: export.write_points(solids.tooth_surface(drive), path),
+        "tooth_mm.stl": lambda path: export.write_stl(solids.tooth_surface(drive).solid(), path, title),
+    }
+
+
+def _same(table: xr.Dataset) -> xr.Dataset:
+    return table
+
+
+def _write_columns(columns: Callable[[], Mapping[str, Any]], path: Path) -> Path:
+    return write_table(columns(), path)
+
+
+def _write_arrays(made: Callable[[], xr.Dataset | None], path: Path) -> Path:
+    arrays = made()
+    assert arrays is not None
+    return labelled.save(arrays, path)
+
+
+def summary(found: Findings) -> tuple[report.Row, ...]:
+    """All single numbers of a report; those that could not be computed are left out."""
+    rows: list[report.Row] = []
+    parts: tuple[Callable[[], tuple[report.Row, ...]], ...] = (
+        lambda: report.geometry(found.file),
+        lambda: found.torsional_rows,
+        lambda: found.thickness_rows,
+        lambda: report.strength(found.file),
+        lambda: found.powers,
+    )
+    for part in parts:
+        try:
+            rows += part()
+        except (ArithmeticError, ValueError):
+            continue
+    return tuple(rows)
+
+
+def files(found: Findings, folder: str | Path) -> Section:
+    """Write tables, arrays and meshes, and list what was written.
+
+    Parameters
+    ----------
+    found : Findings
+    folder : str or Path
+        Is made if it is not there.
+
+    Returns
+    -------
+    Section
+        A part that could not be written is named with the reason, and does not keep the others back.
+    """
+    written, refused = export.write_parts(parts_of(found), folder)
+    points = [f"`{path.name}` ({path.stat().st_size / 1024:.0f} kB)" for path in written]
+    points += [f"`{name}` was not written: {reason}" for name, reason in refused.items()]
+    words = Paragraph("The tables and arrays of this report, and the tooth, for other programs.")
+    return Section(_FILES, (words, Listing(tuple(points))))
+
+
+def write_report(found: Findings, folder: str | Path, say: Callable[[str], object] = lambda _: None) -> Path:
+    """Write the page of a report, and tables, arrays and meshes beside it; all of it appears at once, or nothing.
+
+    Parameters
+    ----------
+    found : Findings
+    folder : str or Path
+        Where it goes. If it is there already, files of the same name are replaced, and others stay.
+    say : callable
+        Called with a line of progress as each section begins.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be written to.
+    """
+    count = len(SECTIONS) + 1
+    made = []
+    with folder_written_whole(Path(folder)) as place:
+        for number, (title, make) in enumerate(SECTIONS, start=1):
+            say(f"section {number} of {count}: {title}")
+            made.append(attempted(title, partial(make, found)))
+        say(f"section {count} of {count}: {_FILES}")
+        made.append(attempted(_FILES, partial(files, found, place)))
+        (place / PAGE).write_text(page(f"Report on {found.file.name}", made), encoding="utf-8")
+    return Path(folder, PAGE)

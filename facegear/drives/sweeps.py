@@ -1,0 +1,212 @@
+"""A stability map of a drive file over any number that it gives, named and measured as the file does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from facegear.drives import report
+from facegear.drives.contacts import NAMES
+from facegear.drives.drive_file import DriveFile
+from facegear.drives.drive_keys import OVER_SI, SECTIONS, Key
+from facegear.drives.verdict import driven
+from facegear.floquet.models import Model, value_of
+from facegear.mechanics.edge_stiffness import Following
+from facegear.support import labelled
+from facegear.support.parameters import finite, integer_at_least, rpm
+from facegear.support.tables import write_table
+
+_GEARBOX = "gearbox"
+# Part of its own value that a number is swept on either side.
+_HALF = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A map of a drive.
+
+    Attributes
+    ----------
+    key : Key
+        The number that is swept, of the drive file.
+    own : float
+        Its value in the drive file, in the file's unit.
+    chart : xarray.Dataset
+        From :func:`facegear.drives.report.growth_map`, in SI.
+    """
+
+    key: Key
+    own: float
+    chart: xr.Dataset
+
+    @property
+    def values(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        """Values of the number, in the file's unit, (V,)."""
+        name = str(self.chart["growth_rate"].dims[0])
+        return np.array([self.key.from_si(float(value)) for value in self.chart[name].values])
+
+
+def models(file: DriveFile, contact: str, following: Following) -> dict[str, Model]:
+    """Models of a drive whose numbers can be swept, by the section that is about them alone.
+
+    Parameters
+    ----------
+    file : DriveFile
+    contact : str
+        One of :data:`facegear.drives.contacts.NAMES` that the teeth can have, or empty for that of the file.
+    following : {"follower", "dead"}
+        What the driving force does.
+
+    Returns
+    -------
+    dict
+        Of the body in the basis of the file under ``""``; of the gearbox, if there is one, under ``"gearbox"``.
+
+    Raises
+    ------
+    ValueError
+        If the teeth cannot have the contact.
+    """
+    possible = {short: file.contacts[long] for short, long in NAMES.items() if long in file.contacts}
+    if contact and contact not in possible:
+        raise ValueError(f"contact must be {' or '.join(possible)} for these teeth, got {contact!r}")
+    chosen = possible[contact] if contact else next(iter(file.contacts.values()))
+    transverse: Model = driven(file, following, chosen)
+    return {"": transverse} | ({_GEARBOX: file.torsional} if file.torsional is not None else {})
+
+
+def sweepable(found: Mapping[str, Model]) -> dict[str, tuple[Model, Key]]:
+    """Keys of a drive file that are parameters of its models.
+
+    Parameters
+    ----------
+    found : mapping
+        From :func:`models`.
+
+    Returns
+    -------
+    dict
+        Name of the key to the model and the key.
+    """
+    keys: dict[str, tuple[Model, Key]] = {}
+    for name, section in SECTIONS.items():
+        model = found.get(_GEARBOX) if name == _GEARBOX else found[""]
+        for key in section.keys if model is not None else ():
+            # Damping of a gearbox is a time in the file and a coefficient in the model.
+            plain = key.kind == "number" and key.unit not in OVER_SI
+            if plain and not (name == _GEARBOX and "damping" in key.name) and _has(model, key.si_name):
+                assert model is not None
+                keys[key.name] = (model, key)
+    return keys
+
+
+def _has(model: Model | None, name: str) -> bool:
+    try:
+        value_of(model, name)
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
+def sweep(
+    file: DriveFile,
+    key: str = "stiffness",
+    *,
+    lowest: float | None = None,
+    highest: float | None = None,
+    speeds_rpm: tuple[float, float] | None = None,
+    cells: int = 60,
+    contact: str = "",
+    following: Following = "follower",
+    jobs: int = 1,
+) -> Sweep:
+    """Compute growth rates over speed and one number of a drive file.
+
+    Parameters
+    ----------
+    file : DriveFile
+    key : str
+        Name of a key, as ``"stiffness"``, ``"thickness_ratio"``, ``"power_kW"`` or, of the section `gearbox`,
+        ``"input_stiffness_Nm_per_rad"``.
+    lowest, highest : float, optional
+        First and last value, in the unit of the key. Default: half and one and a half times that of the file, as far as
+        the key goes.
+    speeds_rpm : tuple of float, optional
+        Lowest and highest speed of the face gear [rpm]; those of the file if left out.
+    cells : int
+        Number of values and of speeds, at least 2.
+    contact, following
+        As for :func:`models`.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``.
+
+    Returns
+    -------
+    Sweep
+        In the basis of the file, nodal_circles and nodal_diameters.
+
+    Raises
+    ------
+    ValueError
+        If the key is none that can be swept, or its values or the speeds do not ascend or are out of range.
+    """
+    keys = sweepable(models(file, contact, following))
+    if key not in keys:
+        raise ValueError(f"parameter must be one of {', '.join(keys)}, got {key!r}")
+    model, chosen = keys[key]
+    cells = integer_at_least("cells", cells, 2)
+    own = chosen.from_si(value_of(model, chosen.si_name))
+    low = max(_HALF * own, chosen.lowest) if lowest is None else finite("from", lowest)
+    high = min((1.0 + _HALF) * own, chosen.highest) if highest is None else finite("to", highest)
+    if not chosen.lowest <= low < high <= chosen.highest:
+        raise ValueError(
+            f"from and to must ascend and be {chosen.valid_entry.removeprefix('0, or ')} for {key}, "
+            f"got {low:g} to {high:g}"
+        )
+    slow, fast = speeds_rpm or tuple(float(rpm(speed)) for speed in file.requirements.speeds)
+    if not 0.0 < finite("speeds", slow) < finite("speeds", fast):
+        raise ValueError(f"speeds must be greater than 0 and ascend, got {slow:g} to {fast:g}")
+    values = [chosen.to_si(value) for value in np.linspace(low, high, cells).tolist()]
+    provenance = f"{report.describe(file)}, contact = {contact or 'as in the file'}, following = {following}"
+    chart = report.growth_map(
+        model, chosen.si_name, values, np.linspace(slow, fast, cells), provenance, jobs=jobs
+    )
+    return Sweep(chosen, own, chart)
+
+
+def columns(found: Sweep) -> dict[str, list[float]]:
+    """Columns of a table: the number in the file's unit, speed [rpm], growth rate [1/s], one row a cell."""
+    speeds = found.chart["speed_rpm"].values
+    value, speed = np.meshgrid(found.values, speeds, indexing="ij")
+    return {
+        found.key.name: value.ravel().tolist(),
+        "speed_rpm": speed.ravel().tolist(),
+        "growth_rate_per_s": found.chart["growth_rate"].values.ravel().tolist(),
+    }
+
+
+def _write_picture(found: Sweep, path: Path) -> object:
+    from facegear.plotting.report import growth_map
+    from facegear.support.files import written_whole
+
+    unit = f" [{found.key.unit}]" if found.key.unit else ""
+    none = report.tongue_table((), "")
+    scale = found.key.from_si(1.0)
+    figure = growth_map(found.chart, none, found.key.to_si(found.own), f"{found.key.name}{unit}", scale)
+    with written_whole(path) as place:
+        figure.savefig(place, dpi=150)
+    return path
+
+
+WRITERS: Mapping[str, Callable[[Sweep, Path], object]] = {
+    ".nc": lambda found, path: labelled.save(found.chart, path),
+    ".csv": lambda found, path: write_table(columns(found), path),
+    ".svg": _write_picture,
+    ".png": _write_picture,
+    ".pdf": _write_picture,
+}
+"""What writes a map, by the ending of the file."""

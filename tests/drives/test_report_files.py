@@ -1,0 +1,88 @@
+"""The report as files: what is on the page, what lies beside it, and what one part that fails leaves standing."""
+
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+from facegear.drives import report, report_files, sections
+from facegear.drives.drive_file import parse_drive
+from facegear.drives.findings import Findings
+from facegear.support.labelled import load
+from tests.drives.test_page import Reader
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def file():
+    content = yaml.safe_load((ROOT / "data" / "drives" / "example_b.yaml").read_text(encoding="utf-8"))
+    content["operation"] |= {"lowest_speed_rpm": 960}
+    return parse_drive(yaml.safe_dump(content))
+
+
+@pytest.fixture(scope="module")
+def results(file, tmp_path_factory):
+    """Write a report whose search for the critical thickness fails."""
+    folder, told = tmp_path_factory.mktemp("drive") / "results", []
+
+    def fails(*_, **__):
+        raise ArithmeticError("the search lost its way")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(report, "thickness_verdicts", fails)
+        page = report_files.write_report(Findings(file, cells=3, most_steps=1, jobs=1), folder, told.append)
+    return page, told
+
+
+def test_one_part_that_fails_leaves_the_others(results):
+    page, _ = results
+    text = Reader(page.read_text(encoding="utf-8")).text
+    assert text.count("This part could not be computed") == 1
+    assert "the others could: the search lost its way" in text
+    for words in ("Example B", "contact ratio, Tregold", "largest stress at the root"):
+        assert words in text
+    table = (page.parent / "summary.csv").read_text(encoding="utf-8-sig")
+    assert "largest stress at the root" in table
+    assert "critical power of a pinion" in table
+    assert "critical thickness" not in table
+
+
+def test_progress_names_each_section(results):
+    _, told = results
+    titles = [*(title for title, _ in sections.SECTIONS), "Files"]
+    assert told == [f"section {k} of {len(titles)}: {title}" for k, title in enumerate(titles, start=1)]
+
+
+def test_the_page_has_the_sections_under_their_titles(results):
+    page, _ = results
+    found = re.findall(r'<h2 id="section-\d+">([^<]*)</h2>', page.read_text(encoding="utf-8"))
+    assert found == [*(title for title, _ in sections.SECTIONS), "Files"]
+
+
+def test_files_that_are_listed_are_there_and_no_others(results):
+    page, _ = results
+    listed = re.findall(r"<code>([\w.]+\.(?:csv|nc|stl))</code>", page.read_text(encoding="utf-8"))
+    assert sorted([*listed, "report.html"]) == sorted(path.name for path in page.parent.iterdir())
+    assert len(listed) > 10
+    # Tables come before what takes long or fails more easily.
+    kinds = [name.rpartition(".")[2] for name in listed]
+    assert kinds == [*sorted(kinds[:-2], key=["csv", "nc"].index), "csv", "stl"]
+    assert load(page.parent / "map_dead.nc")["growth_rate"].shape == (3, 3)
+    assert [path.name for path in page.parent.parent.iterdir()] == ["results"]
+
+
+def test_an_interruption_leaves_nothing(file, tmp_path):
+    def interrupted(line):
+        if line.startswith("section 3"):
+            raise KeyboardInterrupt
+
+    found = Findings(file, cells=3, most_steps=1, jobs=1)
+    with pytest.raises(KeyboardInterrupt):
+        report_files.write_report(found, tmp_path / "results", interrupted)
+    assert not list(tmp_path.iterdir())
+
+
+def test_results_lie_beside_the_file():
+    assert report_files.results_directory("a/my_drive.yaml") == Path("a/my_drive_results")

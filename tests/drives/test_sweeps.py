@@ -1,0 +1,93 @@
+"""Maps over any number of a drive file, in the file's units."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from facegear.drives.drive_file import parse_drive
+from facegear.drives.examples import example_text
+from facegear.drives.sweeps import WRITERS, columns, models, sweep, sweepable
+from facegear.drives.verdict import driven
+from facegear.floquet.models import replace_parameter
+from facegear.floquet.multipliers import growth_rate
+from facegear.support.labelled import load
+from facegear.support.parameters import rad_per_s
+
+CASE_1 = parse_drive(example_text("case_1"))
+BOX = parse_drive(example_text("gearbox_table_7_1"))
+FEW = {"cells": 3, "speeds_rpm": (400.0, 600.0)}
+
+
+@pytest.mark.parametrize(
+    ("key", "low", "high", "parameter", "unit"),
+    [
+        ("stiffness", 0.2, 0.8, "stiffness", 1.0),
+        ("damping_us", 1.0, 9.0, "load.damping", 1e-6),
+        ("bore_radius_mm", 40.0, 60.0, "bore_radius", 1e-3),
+        ("power_kW", 100.0, 300.0, "power", 1e3),
+        ("youngs_modulus_GPa", 150.0, 210.0, "youngs_modulus", 1e9),
+    ],
+)
+def test_each_row_is_the_drive_with_that_value_in_the_files_unit(key, low, high, parameter, unit):
+    found = sweep(CASE_1, key, lowest=low, highest=high, contact="geometric", following="dead", **FEW)
+    assert found.values == pytest.approx([low, (low + high) / 2, high])
+    model = driven(CASE_1, "dead", CASE_1.contacts["true sweep"])
+    expected = [
+        [
+            growth_rate(replace_parameter(model, parameter, value * unit).system(float(rad_per_s(v))))
+            for v in (400.0, 500.0, 600.0)
+        ]
+        for value in (low, (low + high) / 2, high)
+    ]
+    np.testing.assert_allclose(found.chart["growth_rate"], expected, rtol=1e-5, atol=1e-3)
+
+
+def test_a_key_of_the_gearbox_is_swept_in_torsion():
+    key = "output_stiffness_Nm_per_rad"
+    found = sweep(BOX, key, lowest=1e7, highest=2e7, **FEW)
+    model = replace_parameter(BOX.torsional, "output_stiffness", 2e7)
+    rate = growth_rate(model.system(float(rad_per_s(600.0))))
+    assert found.chart["growth_rate"].values[2, 2] == pytest.approx(rate, rel=1e-5, abs=1e-3)
+    keys = sweepable(models(BOX, "", "follower"))
+    assert not [name for name in keys if name.endswith("damping_us") and name != "damping_us"]
+    assert key not in sweepable(models(CASE_1, "", "follower"))
+
+
+def test_half_and_one_and_a_half_times_the_own_value_if_nothing_is_said():
+    found = sweep(CASE_1, "thickness_ratio", **FEW)
+    assert found.values == pytest.approx([0.015, 0.03, 0.045])
+    assert found.own == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"key": "nosuch"}, r"parameter must be one of module_mm, .*stiffness.*, got 'nosuch'"),
+        ({"key": "input_stiffness_Nm_per_rad"}, "parameter must be one of"),
+        ({"lowest": 2.0, "highest": 1.0}, "from and to must ascend"),
+        ({"lowest": -1.0}, "from and to must ascend and be a number from 1e-06 to 1000 for stiffness"),
+        ({"speeds_rpm": (500.0, 400.0)}, "speeds must be greater than 0 and ascend, got 500 to 400"),
+        ({"contact": "loaded"}, "contact must be tregold or geometric for these teeth, got 'loaded'"),
+        ({"cells": 1}, "cells must be at least 2"),
+    ],
+)
+def test_what_cannot_be_swept(changes, told):
+    with pytest.raises(ValueError, match=told):
+        sweep(CASE_1, **({"key": "stiffness"} | changes))
+
+
+def test_files(tmp_path):
+    found = sweep(CASE_1, "stiffness", lowest=0.2, highest=0.8, **FEW)
+    for end, write in WRITERS.items():
+        write(found, tmp_path / f"map{end}")
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == sorted(WRITERS)
+    chart = load(tmp_path / "map.nc")
+    np.testing.assert_allclose(chart["growth_rate"], found.chart["growth_rate"])
+    with (tmp_path / "map.csv").open(encoding="utf-8-sig") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 9
+    assert list(rows[0]) == ["stiffness", "speed_rpm", "growth_rate_per_s"]
+    assert float(rows[5]["growth_rate_per_s"]) == pytest.approx(
+        columns(found)["growth_rate_per_s"][5], rel=1e-11
+    )
