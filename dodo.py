@@ -19,7 +19,7 @@ from doit.exceptions import TaskFailed
 
 from compendium.contents import ContentsError
 from tools.imports import imported_by
-from tools.pages import bibtex, figure_index, offer_numbers, run_times
+from tools.pages import bibtex, figure_index, offer_numbers, put_outputs_in_readers_digits, run_times
 from tools.progress import CELLS, BuildReporter
 from tools.run_notebook import code_cells
 
@@ -182,6 +182,7 @@ def stage() -> TaskFailed | None:
         content = nbformat.read(EXECUTED / notebook.name, as_version=4)
         for cell in content.cells:
             offer_numbers(cell, stored)
+            put_outputs_in_readers_digits(cell)
         for output in (output for cell in content.cells for output in cell.get("outputs", [])):
             # Meant for JupyterLab; Sphinx would warn of it. The same output carries HTML for the pages.
             output.get("data", {}).pop("application/vnd.plotly.v1+json", None)
