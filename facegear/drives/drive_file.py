@@ -127,6 +127,25 @@ def read_drive_file(path: str | Path) -> DriveFile:
     ------
     DriveFileError
         If the file cannot be read, or as :func:`parse_drive`.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import facegear as fg
+    >>> text = '''
+    ... name: Case I
+    ... gears: {pinion_teeth: 26, gear_teeth: 130, module_mm: 3.175}
+    ... body: {thickness_ratio: 0.03, bore_radius_mm: 50}
+    ... pinions: {stiffness: 1.0, damping_us: 3, mass: 1.0}
+    ... operation: {lowest_speed_rpm: 100, highest_speed_rpm: 1000, power_kW: 400, pinion_speed_rpm: 5000}
+    ... '''
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "mine.yaml"
+    ...     _ = path.write_text(text, encoding="utf-8")
+    ...     file = fg.read_drive_file(path)
+    >>> file.name
+    'Case I'
     """
     if not isinstance(path, str | Path) or not str(path).strip():
         raise DriveFileError(f"drive_file must be the path of a YAML file, got {path!r}")

@@ -36,7 +36,7 @@ def notebook(drive_file: str | Path | None) -> dict[str, Any]:
         f"study = studies.study_of({None if drive_file is None else str(Path(drive_file).resolve())!r})\n",
         "explorer.MapExplorer(study)",
     ]
-    cell = {
+    cell: dict[str, object] = {
         "cell_type": "code",
         "id": "explorer",
         "metadata": {},
