@@ -230,7 +230,7 @@ def _add_explore(commands: Any) -> None:
         _explore,
         "controls and a stability map to click on, in a browser",
         """\
-  facegear explore                    the drive of Fig. 4.4(a)
+  facegear explore                    the example case_1
   facegear explore my_drive.yaml
   facegear explore --no-browser --port 8866
 
