@@ -440,6 +440,7 @@ def _explore(options: argparse.Namespace) -> int:
     if lacking := uninstalled():
         _say(f'facegear explore needs {", ".join(lacking)}: pip install "facegear[explore]"')
         return REFUSED
-    if options.file is not None:
-        read_drive_file(options.file)
+    from facegear.drives.file_study import study_of
+
+    study_of(options.file)  # What cannot be explored is told here, not in a browser.
     return serve(options.file, options.port, browser=not options.no_browser)
