@@ -254,7 +254,7 @@ def _add_explore(commands: Any) -> None:
         _explore,
         "controls and a stability map to click on, in a browser",
         """\
-  facegear explore                    the drive of Fig. 4.4(a)
+  facegear explore                    the example case_1
   facegear explore my_drive.yaml
   facegear explore --no-browser --port 8866
 
@@ -477,6 +477,7 @@ def _explore(options: argparse.Namespace) -> int:
     if lacking := uninstalled():
         _say(f'facegear explore needs {", ".join(lacking)}: pip install "facegear[explore]"')
         return REFUSED
-    if options.file is not None:
-        read_drive_file(options.file)
+    from facegear.drives.file_study import study_of
+
+    study_of(options.file)  # What cannot be explored is told here, not in a browser.
     return serve(options.file, options.port, browser=not options.no_browser)
