@@ -13,13 +13,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.stats import chi2
 
 from facegear.design.fits import Fit, local_fits, spread_starts
-from facegear.floquet.models import Model, replace_parameter, require_model, value_of
+from facegear.floquet.models import (
+    Model,
+    parameter_path,
+    replace_parameter,
+    require_model,
+    system_at,
+    value_of,
+)
 from facegear.maps.exponents import ExponentSensitivity, exponent_sensitivity
 from facegear.support.parameters import (
     finite,
@@ -81,6 +89,15 @@ class Survey:
                 raise TypeError(f"{name} must be a list of {kind}, got {listed!r}")
             keep(self, **{name: tuple(listed)})
         integer_at_least("number of parameters", len(self.parameters), 1)
+        system_at(self.model, self.speed)
+        paths = [parameter_path(self.model, name) for name in self.parameters]
+        if len(set(paths)) < len(paths):
+            raise ValueError(f"parameters must differ, got {self.parameters}")
+        for name, path in zip(self.parameters, paths, strict=True):
+            if isinstance(attrgetter(".".join(path))(self.model), int):
+                raise ValueError(
+                    f"parameters must be such that can lose a part, got {name!r}, a whole number"
+                )
         integer_at_least("number of motions", len(self.motions), 1)
         count = len(self.intact.oscillating)
         for number, motion in enumerate(self.motions):

@@ -16,6 +16,7 @@ import xarray as xr
 
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.orbits import Orbit, periodic_orbit
+from facegear.floquet.periodic import named
 from facegear.floquet.transients import settled
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.backlash import Backlash
@@ -52,9 +53,10 @@ def motions_in_tongues(play: Backlash, found: Sequence[Tongue], parameters: str)
     xarray.Dataset
         Over ``tongue``: ``peak`` [rpm]; ``compression`` [µm], the largest of the teeth along the line of action,
         infinite where the motion grows beyond a thousand times ``at_rest``, that of the resting gearbox. Labels in
-        ``label``, and in ``motion`` what it is: "repeats every 2 periods, flanks part" or the like.
+        ``label``, and in ``motion`` what it is: "repeats every 2 periods, flanks part" or the like, or why it was not
+        followed, with NaN for its compression.
     """
-    rows = [motion_from_rest(play, tongue.peak, _periods(play, tongue)) for tongue in found]
+    rows = [_in_tongue(play, tongue) for tongue in found]
     size = partial(variable, units="µm", rtol=0.1, atol=0.1)
     return xr.Dataset(
         {
@@ -71,6 +73,14 @@ def motions_in_tongues(play: Backlash, found: Sequence[Tongue], parameters: str)
         },
         attrs={"parameters": parameters},
     )
+
+
+def _in_tongue(play: Backlash, tongue: Tongue) -> Motion:
+    """Motion at the peak of a tongue, or why it is not followed."""
+    try:
+        return motion_from_rest(play, tongue.peak, _periods(play, tongue))
+    except ArithmeticError as error:
+        return Motion(math.nan, f"not followed: {error}", None, np.zeros((0, 0)))
 
 
 def _periods(play: Backlash, tongue: Tongue) -> int:
@@ -134,8 +144,11 @@ def motion_from_rest(play: Backlash, speed: float, periods: int = _FEWEST) -> Mo
 
     Raises
     ------
-    ValueError
-        If `periods` is no multiple of 50.
+    TypeError, ValueError
+        If an argument is of the wrong kind, or `periods` no multiple of 50.
+    ArithmeticError
+        If the speed is so low that a mesh period takes too many steps, see
+        :func:`facegear.floquet.transients.settled`.
 
     Examples
     --------
@@ -145,6 +158,7 @@ def motion_from_rest(play: Backlash, speed: float, periods: int = _FEWEST) -> Mo
     >>> motion_from_rest(play, rad_per_s(700.0)).words
     'repeats each period, stays pressed'
     """
+    _require_play(play)
     system, rest = play.system(speed), _at_rest(play)
     if integer_at_least("periods", periods, _STEP) % _STEP:
         raise ValueError(f"periods must be a multiple of {_STEP}, got {periods}")
@@ -165,6 +179,11 @@ def motion_from_rest(play: Backlash, speed: float, periods: int = _FEWEST) -> Mo
     largest = float(orbit.response.extremes(lambda x: _compression(play, orbit.displacements(x)))[1])
     count = "each period" if orbit.periods == 1 else f"every {orbit.periods} periods"
     return Motion(largest, f"repeats {count}, {_FLANKS[_contact(play, orbit)]}", orbit, ends)
+
+
+def _require_play(play: object) -> None:
+    if not isinstance(play, Backlash):
+        raise TypeError(f"play must be a Backlash, a gearbox whose teeth have a gap, got {named(play)}")
 
 
 def _contact(play: Backlash, orbit: Orbit) -> int:

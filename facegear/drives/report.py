@@ -31,7 +31,7 @@ from facegear.maps.tracing import Tongue
 from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
-from facegear.mechanics.spread_force import RIM_POINT
+from facegear.mechanics.spread_force import RIM_POINT, pitch_ratio
 from facegear.mechanics.transverse import FaceGears, nominal_pinion_mass
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s, rpm
@@ -84,6 +84,7 @@ def geometry(file: DriveFile) -> tuple[Row, ...]:
         Row("bearing stiffness", model.bearing_stiffness, "N/m"),
         Row("pinion mass", model.pinion_mass, "kg"),
         Row(f"driving force of a {powered(file.transverse)}", force, "N"),
+        Row("moment of that force at the rim over that of the power", 1.0 / pitch_ratio(drive), "1"),
         *(() if file.teeth is None else (Row("stiffness of a tooth pair", file.teeth.stiffness, "N/m"),)),
     )
 

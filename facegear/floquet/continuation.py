@@ -215,7 +215,11 @@ def followed(
     """
     setting = _Setting.of(systems, orbit, low, high, following)
     at = within("parameter", parameter, setting.low, setting.high)
-    sense = math.copysign(1.0, finite("direction", direction))
+    if finite("direction", direction) == 0.0:
+        raise ValueError(
+            "direction must be greater than 0 for larger parameters or less for smaller ones, got 0"
+        )
+    sense = math.copysign(1.0, direction)
     first = _start(setting, orbit, at, sense)
     missed = np.abs(
         setting.scaled(first.step.transition @ first.state + first.step.moved - first.state)

@@ -20,6 +20,8 @@ from facegear.support.types import FloatArray
 
 # Largest angle of the fastest natural motion in a step [rad].
 _ANGLE = 0.2
+# Steps a period from which even one motion takes minutes.
+_MOST_STEPS = 5000
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +50,12 @@ class _Field:
     @classmethod
     def of(cls, system: ClearanceSystem) -> _Field:
         inner, n, p = system.system, system.size, len(system.sides)
+        steps = system.fastest * system.period / _ANGLE
+        if steps > _MOST_STEPS:
+            raise ArithmeticError(
+                f"the fastest motion in contact, {system.fastest:.3g} rad/s, takes {steps:.3g} steps in a period of "
+                f"{system.period:.3g} s, more than {_MOST_STEPS}: too slow to be followed"
+            )
         edges = system.divided(_ANGLE, fewest=2)
         places: tuple[tuple[FloatArray, Side], ...] = (
             (edges[:-1], "right"),
@@ -127,6 +135,8 @@ def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int 
     ------
     TypeError, ValueError
         Naming the argument.
+    ArithmeticError
+        If a period takes more than 5000 steps: it is too long for the fastest motion.
     """
     count = integer_at_least("periods", periods, 1)
     kept = integer_within("kept", kept, 1, count)

@@ -34,6 +34,8 @@ _GRADING, _SHORTEST = 8.0, 1e-9
 _TOLERANCE, _SHORT = 1e-13, 1e-3
 # The same where the shaper shortens contact lines: their ends are roots of roots, known to 1e-14 or so.
 _CUT_TOLERANCE = 1e-11
+# Beyond this speed numbers overflow before anything turns so fast [rad/s].
+_FASTEST = 1e7
 
 
 class PairStates(NamedTuple):
@@ -567,19 +569,21 @@ def _pitch_passage(drive: Drive, contact_ratio: float) -> float:
     return (drive.entry_rotation + 0.5 * math.pi / drive.pinion_teeth) / sweep * contact_ratio
 
 
-def mesh_period(drive: Drive, gear_speed: float) -> float:
+def mesh_period(drive: Drive, speed: float) -> float:
     """Mesh period T0 = 2π/(N2 Ω2) [s] (3-20).
 
     Parameters
     ----------
     drive : Drive
-    gear_speed : float
-        Ω2 of the face gear [rad/s], greater than 0.
+    speed : float
+        Ω2 of the face gear [rad/s], greater than 0, at most 1e7.
 
     Raises
     ------
     TypeError, ValueError
-        `gear_speed` is not a number, not finite, zero or negative.
+        `speed` is not a number, or outside this range.
     """
-    speed = parameters.positive("gear_speed", gear_speed, "rad/s")
+    speed = parameters.positive("speed", speed, "rad/s")
+    if speed > _FASTEST:
+        raise ValueError(f"speed must be at most {_FASTEST:g} rad/s, got {speed!r} rad/s")
     return 2.0 * math.pi / (drive.gear_teeth * speed)

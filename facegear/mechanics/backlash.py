@@ -53,9 +53,12 @@ class Backlash:
         The gearbox without play (chapter 7).
     torque : float
         Constant torque of the load against the rotation of the output [N m], greater than 0: without it nothing closes
-        the gap.
+        the gap. At most what presses one pair of teeth in by a module.
     gap : float
-        Backlash along the line of action [m], from 0 to a module. With 0 the flanks are one: they pull as well as push,
+        Backlash along the line of action [m], from 0 to a module. It turns gear and load on by half of it. Where the
+        arm of the mesh force varies, as that printed (7-3) does, this turn is a transmission error by itself, in
+        proportion to the gap, and motions depend on the gap though no flank parts; with the constant arm of conjugate
+        teeth they do not. With 0 the flanks are one: they pull as well as push,
         the back flanks' own path plays no part, and the system is the linear one of chapter 7 under the torque. That is
         not the limit of small gaps wherever the teeth would pull.
     transmission_error : PiecewiseChebyshev, optional
@@ -97,6 +100,7 @@ class Backlash:
                 "torque must be greater than 0 N m, or nothing presses the flanks together and closes the gap, got "
                 f"{self.torque!r} N m"
             )
+        self._require_small(torque)
         keep(self, torque=torque, gap=within("gap", self.gap, 0.0, self.torsional.drive.module, "m"))
         error = self.transmission_error
         if error is not None and not isinstance(error, PiecewiseChebyshev):
@@ -105,6 +109,16 @@ class Backlash:
             raise ValueError(f"transmission_error must have one component, got {error.components}")
         one_of("back_flank", self.back_flank, ("reversed", "printed"))
         _ = self.turning_point
+
+    def _require_small(self, torque: float) -> None:
+        """Refuse a torque that presses the teeth in by more than a module at rest."""
+        drive, box = self.torsional.drive, self.torsional.gearbox.in_si
+        per_torque = 1.0 / (box.mesh_stiffness * drive.base_radius * drive.gear_ratio)
+        if torque * per_torque > drive.module:
+            raise ValueError(
+                f"torque must be at most {drive.module / per_torque:.3g} N m, which presses one pair of teeth in by a "
+                f"module, got {torque!r} N m (N mm?)"
+            )
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

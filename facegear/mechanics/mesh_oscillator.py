@@ -39,6 +39,7 @@ from facegear.geometry.kinematics import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
 from facegear.mechanics.plate import RadialModes
+from facegear.mechanics.torsional import mesh_stiffness
 from facegear.mechanics.transverse import MOST_PERIODS, PinionsOnDisk, Transverse
 from facegear.support.parameters import designed, finite_array, keep, nonnegative, positive, within
 from facegear.support.types import FloatArray
@@ -48,6 +49,8 @@ FOLLOWED = Contact(rate="total")
 
 # Angles [rad] and phases [mesh periods] closer than this are the same.
 _SAME = 1e-6
+# Stiffness of a tooth pair over that of the teeth alone (7-2): room for the limits of soft and of rigid teeth.
+_SOFTEST, _STIFFEST = 5e-6, 1e6
 # Damping of the mesh over its stiffness [s].
 _MOST_DAMPING = 0.01
 
@@ -124,7 +127,13 @@ class MeshOscillator(PinionsOnDisk):
             raise ValueError(
                 "load.mass must be greater than 0 for a pinion to have a motion of its own, got 0.0"
             )
-        keep(self, mesh_stiffness=positive("mesh_stiffness", self.mesh_stiffness, "N/m"))
+        own = mesh_stiffness(self.body.drive, 1.0, self.body.material)
+        given = positive("mesh_stiffness", self.mesh_stiffness, "N/m")
+        hint = "N/µm, not N/m?" if own * _SOFTEST <= 1e6 * given <= own else ""
+        keep(
+            self,
+            mesh_stiffness=within("mesh_stiffness", given, own * _SOFTEST, own * _STIFFEST, "N/m", hint),
+        )
         damping = nonnegative("mesh_damping", self.mesh_damping, "s")
         if damping == 0.0:
             raise ValueError(

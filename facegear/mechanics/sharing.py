@@ -84,6 +84,8 @@ class shared_load:  # noqa: N801 (a path, as the functions line_contact and poin
             As that path, or if it has no contact lines.
         """
         own = self.path(drive, contact_ratio)
+        if not isinstance(own, TimedPairs):
+            raise TypeError(f"path must return contact points, a TimedPairs such as ContactPath, got {own!r}")
         return SharedPath(drive, own.contact_ratio, own=own, rule=self.rule)
 
 

@@ -173,7 +173,11 @@ RIM_POINT = RimPoint()
 
 @dataclass(frozen=True)
 class PitchPoint(Spread):
-    """One point at the pitch radius of the gear, where the force F_t of a power has that power's moment."""
+    """One point at the pitch radius of the gear.
+
+    As of every spread the moment is that of the printed force, F_t at the rim, so that the force here is F_t over
+    :func:`pitch_ratio`. The moment that the power itself has is F_t times the pitch radius, less by that ratio.
+    """
 
     def points(self, drive: Drive) -> PressedPoints:
         """Return the point of the pitch circle on the pinion's axis."""

@@ -6,6 +6,7 @@ import pytest
 from facegear.design.identification import Survey, bound_together, drawn, scatter_over_bound
 from facegear.floquet.hill import exponents
 from facegear.floquet.models import replace_parameter, value_of
+from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.torsional import Torsional
 from facegear.support.parameters import rad_per_s
@@ -141,6 +142,9 @@ def test_two_speeds_tell_what_one_does_not():
         bound_together([two, Survey(GEARBOX, SPEED, NAMES[:2], (0, 1), two.deviations)], LOSSES)
 
 
+PLAY = Backlash(GEARBOX, torque=800.0, gap=1e-4)
+
+
 @pytest.mark.parametrize(
     ("change", "error", "message"),
     [
@@ -154,6 +158,9 @@ def test_two_speeds_tell_what_one_does_not():
         ({"deviations": [[1.0, 0.0], [1.0, 1.0]]}, ValueError, "greater than 0"),
         ({"parameters": ("stiffness_of_input",)}, ValueError, "parameter must be one of"),
         ({"parameters": ()}, ValueError, "number of parameters"),
+        ({"parameters": ("gear_teeth",)}, ValueError, "must be such that can lose a part, got 'gear_teeth'"),
+        ({"parameters": (NAMES[0], f"gearbox.{NAMES[0]}")}, ValueError, "parameters must differ"),
+        ({"model": PLAY}, TypeError, "what model.system.speed. returns must be a PeriodicSystem"),
         ({"speed": -1.0}, ValueError, "speed"),
         ({"model": 3}, TypeError, "model must have a method"),
     ],

@@ -87,3 +87,28 @@ def test_motions_are_in_order_of_size_and_their_rate_is_a_slope():
 
 def test_no_tongue_is_no_row():
     assert motions_in_tongues(PLAY, [], "").sizes["tongue"] == 0
+
+
+class TestRefusals:
+    @pytest.mark.parametrize("wrong", [None, FIGURES["7.12a"].model()])
+    def test_what_has_no_play(self, wrong):
+        with pytest.raises(TypeError, match="play must be a Backlash, a gearbox whose teeth have a gap, got"):
+            motion_from_rest(wrong, 70.0)
+
+    def test_a_speed_that_takes_too_many_steps_is_told_at_once(self):
+        """At 0.001 rpm it asked for 170 GiB."""
+        for speed in (0.001, 5.0):
+            with pytest.raises(ArithmeticError, match=r"takes .* steps in a period .*, more than 5000"):
+                motion_from_rest(PLAY, float(rad_per_s(speed)))
+
+    def test_a_tongue_that_cannot_be_followed_takes_no_others_along(self):
+        slow = tongue(5.0, 1.0)
+        found = motions_in_tongues(
+            PLAY, [replace(slow, lower=slow.peak, upper=slow.peak), tongue(640.0, 190.0)], ""
+        )
+        assert found.motion.values[0].startswith("not followed: the fastest motion in contact")
+        assert np.isnan(found.compression.values).tolist() == [True, False]
+
+    def test_periods_that_are_no_multiple(self):
+        with pytest.raises(ValueError, match="periods must be a multiple of 50, got 70"):
+            motion_from_rest(PLAY, 70.0, periods=70)

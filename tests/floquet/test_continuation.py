@@ -190,6 +190,11 @@ ORBIT = periodic_orbit(gear_pair(1.5))
         ),
         (lambda: followed(gear_pair, 1.5, 3.0, 0.4, 1.5), TypeError, "orbit must be an Orbit"),
         (lambda: followed(gear_pair, 1.5, ORBIT, 1.5, 0.4), ValueError, "low must be less than high"),
+        (
+            lambda: followed(gear_pair, 1.5, ORBIT, 0.4, 1.5, direction=0.0),
+            ValueError,
+            "direction must be greater than 0 for larger parameters or less",
+        ),
         (lambda: followed(gear_pair, 1.6, ORBIT, 0.4, 1.5), ValueError, "parameter must lie in"),
         (
             lambda: followed(gear_pair, 0.7, ORBIT, 0.4, 1.5),

@@ -299,9 +299,9 @@ def test_skew_line_is_3_22():
 def test_mesh_period_is_3_20():
     assert mesh_period(CASE_I, 100.0) == pytest.approx(2 * math.pi / 13000.0, rel=1e-15)
     for speed in (0, -1.0, math.nan, math.inf):
-        with pytest.raises(ValueError, match="gear_speed must be"):
+        with pytest.raises(ValueError, match="speed must be"):
             mesh_period(CASE_I, speed)
-    with pytest.raises(TypeError, match="gear_speed must be a real number"):
+    with pytest.raises(TypeError, match="speed must be a real number"):
         mesh_period(CASE_I, "1000 rpm")
 
 

@@ -221,12 +221,31 @@ def test_at_rest_the_deformation_carries_the_torque():
             "transmission_error must have one component",
         ),
         (lambda: replace(MODEL, back_flank="delayed"), ValueError, "back_flank must be"),
-        (lambda: MODEL.system(0.0), ValueError, "speed"),
+        (lambda: MODEL.system(0.0), ValueError, r"^speed must be greater than 0"),
+        (lambda: MODEL.system(1e300), ValueError, r"^speed must be at most 1e\+07 rad/s"),
+        (
+            lambda: replace(MODEL, torque=1e12),
+            ValueError,
+            r"torque must be at most .* N m, which presses one pair",
+        ),
     ],
 )
 def test_bad_input_names_the_parameter(call, error, message):
     with pytest.raises(error, match=message):
         call()
+
+
+@pytest.mark.parametrize(("arm", "moves"), [("printed", True), ("conjugate", False)])
+def test_a_turn_by_half_the_gap_is_a_transmission_error_where_the_arm_varies(arm, moves):
+    """Seen while all flanks stay pressed: with a constant arm the gap turns gear and load, and nothing else."""
+    swings = []
+    for gap in (1e-8, 4e-4):
+        model = replace(MODEL, torsional=FIGURES["7.12a"].model(arm=arm), gap=gap)
+        orbit = periodic_orbit(model.system(float(rad_per_s(700.0))))
+        assert not model.parts(orbit)
+        swings.append(np.ptp(model.deformation(orbit, np.linspace(0.0, 1.0, 401))))
+    assert (swings[1] > 1.5 * swings[0]) == moves
+    assert moves or swings[1] == pytest.approx(swings[0], rel=1e-6)
 
 
 def test_other_contacts():

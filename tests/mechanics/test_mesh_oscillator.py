@@ -380,6 +380,13 @@ def test_any_drive_has_a_system_that_loses_no_load(stiffness, damping, mass, ang
         ),
         ({"mesh_stiffness": 0.0}, ValueError, "mesh_stiffness must be greater than 0"),
         ({"mesh_stiffness": float("inf")}, ValueError, "mesh_stiffness"),
+        (
+            {"mesh_stiffness": 204.0},
+            ValueError,
+            r"mesh_stiffness must lie in .*got 204.0 N/m \(N/µm, not N/m\?\)",
+        ),
+        ({"mesh_stiffness": 1e-300}, ValueError, "mesh_stiffness must lie in"),
+        ({"mesh_stiffness": 1e17}, ValueError, "mesh_stiffness must lie in"),
         ({"mesh_stiffness": "stiff"}, TypeError, "mesh_stiffness"),
         (
             {"mesh_damping": 0.0},
