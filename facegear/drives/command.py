@@ -356,7 +356,7 @@ def _report(options: argparse.Namespace) -> int:
     from facegear.drives.report_files import results_directory, write_report
 
     folder = options.output or results_directory(options.file)
-    found = Findings(file, options.cells, options.tolerance, options.most_steps, options.jobs)
+    found = Findings(file, options.cells, options.tolerance, options.most_steps, options.jobs, _say)
     page = write_report(found, folder, _say)
     _tell(f"The report: {page.resolve().as_uri()}")
     return DONE

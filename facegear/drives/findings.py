@@ -6,7 +6,7 @@ Parts stand alone: one that cannot be computed raises where it is asked for and 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,6 +49,8 @@ class Findings:
         As for :func:`facegear.drives.basis.settled_tongues`.
     jobs : int
         Number of processes, as joblib's ``n_jobs``.
+    tell : callable
+        Called with a line of progress in what takes long.
     """
 
     file: DriveFile
@@ -56,6 +58,7 @@ class Findings:
     tolerance: float = 0.02
     most_steps: int = 5
     jobs: int = -1
+    tell: Callable[[str], object] = lambda _: None
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -83,7 +86,7 @@ class Findings:
     def cases(self) -> tuple[verdict.Case, ...]:
         """Tongues under each contact and each direction of the driving force."""
         settings = {"tolerance": self.tolerance, "most_steps": self.most_steps}
-        return verdict.cases(self.file, **settings, jobs=self.jobs)  # type: ignore[arg-type]
+        return verdict.cases(self.file, **settings, jobs=self.jobs, tell=self.tell)  # type: ignore[arg-type]
 
     @cached_property
     def torsional_tongues(self) -> tuple[Tongue, ...] | None:

@@ -9,7 +9,7 @@ that is raised until its unstable speeds stand still (:mod:`facegear.drives.basi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID
 from facegear.drives.forces import in_words, pressed
 from facegear.floquet.modes import mean_growth_rate
-from facegear.maps.parallel import in_processes
+from facegear.maps.parallel import each_in_processes
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
@@ -81,7 +81,12 @@ def powered(model: FaceGears) -> str:
 
 
 def cases(
-    file: DriveFile, *, tolerance: float = 0.02, most_steps: int = 5, jobs: int = -1
+    file: DriveFile,
+    *,
+    tolerance: float = 0.02,
+    most_steps: int = 5,
+    jobs: int = -1,
+    tell: Callable[[str], object] = lambda _: None,
 ) -> tuple[Case, ...]:
     """Tongues of a drive under its power, for both contacts that its teeth can have and both directions of the force.
 
@@ -92,6 +97,8 @@ def cases(
         As for :func:`facegear.drives.basis.settled_tongues`.
     jobs : int
         Number of processes, as joblib's ``n_jobs``.
+    tell : callable
+        Called with a line as each case is there.
 
     Returns
     -------
@@ -101,8 +108,11 @@ def cases(
     settings = [(name, contact, force) for name, contact in file.contacts.items() for force in _FORCES]
     models = [driven(file, force, contact) for _, contact, force in settings]
     work = [(model, file.requirements.speeds, tolerance, most_steps) for model in models]
-    found = in_processes(_settled, work, jobs)
-    return tuple(Case(name, force, *result) for (name, _, force), result in zip(settings, found, strict=True))
+    found = []
+    for (name, _, force), result in zip(settings, each_in_processes(_settled, work, jobs), strict=True):
+        found.append(Case(name, force, *result))
+        tell(f"case {len(found)} of {len(settings)}: {found[-1].name}")
+    return tuple(found)
 
 
 def _settled(
