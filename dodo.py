@@ -19,7 +19,7 @@ from doit.exceptions import TaskFailed
 
 from compendium.contents import ContentsError
 from tools.imports import imported_by
-from tools.pages import bibtex, figure_index, run_times
+from tools.pages import bibtex, figure_index, offer_numbers, put_outputs_in_readers_digits, run_times
 from tools.progress import CELLS, BuildReporter
 from tools.run_notebook import code_cells
 
@@ -177,8 +177,12 @@ def stage() -> TaskFailed | None:
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(ROOT / "book", SOURCE, ignore=shutil.ignore_patterns("compendium"))
     (SOURCE / "notebooks").mkdir()
+    stored = {path.stem for path in files("data/reference", "*.nc")}
     for notebook in NOTEBOOKS:
         content = nbformat.read(EXECUTED / notebook.name, as_version=4)
+        for cell in content.cells:
+            offer_numbers(cell, stored)
+            put_outputs_in_readers_digits(cell)
         for output in (output for cell in content.cells for output in cell.get("outputs", [])):
             # Meant for JupyterLab; Sphinx would warn of it. The same output carries HTML for the pages.
             output.get("data", {}).pop("application/vnd.plotly.v1+json", None)
@@ -280,10 +284,13 @@ def task_book() -> dict:
         "file_dep": [
             *(EXECUTED / notebook.name for notebook in NOTEBOOKS),
             *(path for path in files("book", "*") if CODE not in path.parents),
+            *files("facegear", "*.py"),  # their docstrings are a page
             *files("data/reference", "*.nc"),
             *VIGNETTES,
             ROOT / "data" / "contents.yaml",
             ROOT / "tools" / "pages.py",
+            ROOT / "tools" / "public_names.py",
+            ROOT / "tools" / "figure_letters.py",
             ROOT / "CITATION.cff",
             ROOT / "_config.yml",
             ROOT / "uv.lock",

@@ -4,7 +4,7 @@
 """
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -62,6 +62,80 @@ def figures_of(notebook: Path) -> list[BookFigure]:
             caption = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", figure["caption"])
             found.append(BookFigure(figure["name"], caption, notebook.stem))
     return found
+
+
+def numbers_of(cell: nbformat.NotebookNode, stored: Collection[str]) -> list[str]:
+    """Return the names of the stored arrays that a figure's cell shows, as far as cell and label tell.
+
+    Those that the cell hands to its chapter by name, or else those of the figure of the dissertation in its label.
+    """
+    figure = cell.metadata["mystnb"]["figure"]
+    named = re.findall(r'\bchapter\.figure\(\s*"(\w+)"', cell.source)
+    found = [name for name in dict.fromkeys(named) if name in stored]
+    label = re.fullmatch(r"fig-(\d+)-(\d+)([a-z]?)", figure.get("name", ""))
+    if not found and label:
+        name = f"ch{int(label[1]):02d}_figure_{label[1]}_{int(label[2]):02d}"
+        found = [known for known in sorted(stored) if re.fullmatch(name + (label[3] or "[a-z]?"), known)]
+    return found
+
+
+def offer_numbers(cell: nbformat.NotebookNode, stored: Collection[str]) -> None:
+    """Give the caption of a figure's cell links to the arrays it shows, unless its caption has some."""
+    figure = cell.metadata.get("mystnb", {}).get("figure", {})
+    if "caption" not in figure or ".nc" in figure["caption"]:
+        return
+    links = []
+    names = numbers_of(cell, stored)
+    for name in names:
+        part = re.fullmatch(r"ch\d+_figure_\d+_\d+([a-z])", name)
+        text = f"({part[1]})" if part else name.split("_", 1)[1].replace("_", " ")
+        links.append(f"{{download}}`{text if len(names) > 1 else 'netCDF'} <../data/{name}.nc>`")
+    if links:
+        figure["caption"] += f" Numbers: {', '.join(links)}."
+
+
+# Code, fenced or not, and formulas: what is not running text. And numbers as computers write them.
+NOT_TEXT = re.compile(r"(```.*?```|`[^`\n]*`|\$\$.*?\$\$|\$[^$\n]*\$)", re.DOTALL)
+WITH_EXPONENT = re.compile(r"(?<![\w.])([-+−]?\d+(?:\.\d+)?)[eE]([-+]?\d+)(?![\w])")
+MINUS_ZERO = re.compile(r"(?<![\w.)])[-−](0(?:\.0+)?)(?![\d.\w])")
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def _power_of_ten(number: re.Match[str], formula: bool) -> str:
+    digits, exponent = number[1].replace("−", "-"), int(number[2])
+    if -4 <= exponent <= 4:
+        decimals = max(0, len(digits.partition(".")[2]) - exponent)
+        return f"{float(f'{digits}e{exponent}'):.{decimals}f}"
+    power = f"10^{{{exponent}}}" if formula else f"10{str(exponent).translate(SUPERSCRIPTS)}"
+    sign, size = ("-", digits[1:]) if digits[0] == "-" else ("", digits.removeprefix("+"))
+    if float(size) == 1.0:
+        return sign + power
+    times = r"\cdot " if formula else "·"
+    return f"{sign}{size}{times}{power}"
+
+
+def in_readers_digits(text: str) -> str:
+    """Write the numbers in a text as a reader does: 1.6·10⁻⁶ for 1.6e-06, 10470 for 1.047e+04, 0.00 for −0.00.
+
+    Code stays as it is; in a formula a power of ten is one of TeX.
+    """
+    parts = NOT_TEXT.split(text)
+    for place, part in enumerate(parts):
+        if part.startswith("`"):
+            continue
+        formula = part.startswith("$")
+        part = WITH_EXPONENT.sub(lambda number, formula=formula: _power_of_ten(number, formula), part)
+        parts[place] = part if formula else MINUS_ZERO.sub(r"\1", part)
+    return "".join(parts)
+
+
+def put_outputs_in_readers_digits(cell: nbformat.NotebookNode) -> None:
+    """Do that to what a cell shows as text of the page or leaves to be quoted there."""
+    for output in cell.get("outputs", []):
+        data = output.get("data", {})
+        for kind in ("text/markdown", "application/papermill.record/text/plain"):
+            if kind in data:
+                data[kind] = in_readers_digits(data[kind])
 
 
 def counterparts(printed: PrintedFigure, figures: Iterable[BookFigure]) -> list[BookFigure]:

@@ -88,6 +88,32 @@ def load_anchors(path: str | Path) -> tuple[Anchor, ...]:
     return anchors
 
 
+def element_at(computed: xr.Dataset, anchor: Anchor, name: str = "figure") -> float:
+    """Return the element of a figure that an anchor is about.
+
+    Raises
+    ------
+    ReferenceMismatchError
+        If it is not on the grid.
+    """
+    if anchor.variable not in computed:
+        raise ReferenceMismatchError(
+            f"{name}: the anchor's variable '{anchor.variable}' is not among the arrays"
+        )
+    element = computed[anchor.variable]
+    if set(element.dims) != set(anchor.at):
+        raise ReferenceMismatchError(
+            f"{name}: '{anchor.variable}' has dimensions {element.dims}, the anchor {anchor.at}"
+        )
+    for dimension, wanted in anchor.at.items():
+        axis = np.asarray(computed[dimension].values, dtype=float)
+        index = int(np.argmin(np.abs(axis - wanted)))
+        if not np.isclose(axis[index], wanted, rtol=1e-12, atol=1e-14):
+            raise ReferenceMismatchError(f"{name}: the anchor at {dimension} = {wanted} is not on the grid")
+        element = element.isel({dimension: index})
+    return float(element)
+
+
 def check_anchors(computed: xr.Dataset, anchors: tuple[Anchor, ...], name: str = "figure") -> float:
     """Compare single elements of a figure with their independent values.
 
@@ -103,27 +129,11 @@ def check_anchors(computed: xr.Dataset, anchors: tuple[Anchor, ...], name: str =
     """
     worst = 0.0
     for anchor in anchors:
-        if anchor.variable not in computed:
-            raise ReferenceMismatchError(
-                f"{name}: the anchor's variable '{anchor.variable}' is not among the arrays"
-            )
-        element = computed[anchor.variable]
-        if set(element.dims) != set(anchor.at):
-            raise ReferenceMismatchError(
-                f"{name}: '{anchor.variable}' has dimensions {element.dims}, the anchor {anchor.at}"
-            )
-        for dimension, wanted in anchor.at.items():
-            axis = np.asarray(computed[dimension].values, dtype=float)
-            index = int(np.argmin(np.abs(axis - wanted)))
-            if not np.isclose(axis[index], wanted, rtol=1e-12, atol=1e-14):
-                raise ReferenceMismatchError(
-                    f"{name}: the anchor at {dimension} = {wanted} is not on the grid"
-                )
-            element = element.isel({dimension: index})
-        error = abs(float(element) - anchor.value)
+        element = element_at(computed, anchor, name)
+        error = abs(element - anchor.value)
         if not error <= anchor.atol:
             raise ReferenceMismatchError(
-                f"{name}: '{anchor.variable}' at {dict(anchor.at)} is {float(element):.12g}, "
+                f"{name}: '{anchor.variable}' at {dict(anchor.at)} is {element:.12g}, "
                 f"the independent route gives {anchor.value:.12g} (tolerance {anchor.atol:g})"
             )
         worst = max(worst, error / anchor.atol)

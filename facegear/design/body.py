@@ -59,6 +59,15 @@ def critical_thickness(
     ------
     TypeError, ValueError
         As :func:`facegear.maps.lobes.highest_lobes`, or as :class:`Transverse` for what makes up the model.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> drive, load = fg.Drive(26, 130, 3.175e-3), fg.MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0)
+    >>> speeds = fg.rad_per_s(950.0), fg.rad_per_s(1000.0)
+    >>> found = fg.critical_thickness(drive, load, speeds, thickness_range=(0.03, 0.06))
+    >>> f"{found.thickness_ratio:.4f}"
+    '0.0336'
     """
     lowest, highest = ascending("speeds", speeds, "rad/s")
     body = Body(

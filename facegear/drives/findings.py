@@ -268,11 +268,12 @@ def change_advice(found: Findings) -> tuple[str, ...]:
     return tuple(
         sentence
         for name, effect in found.effects.items()
-        for sentence in _best_change(name, effect, found.tongues[name])
+        for sentence in best_change(name, effect, found.tongues[name])
     )
 
 
-def _best_change(name: str, effect: xr.Dataset, tongues: Sequence[Tongue]) -> list[str]:
+def best_change(name: str, effect: xr.Dataset, tongues: Sequence[Tongue]) -> list[str]:
+    """Say which of the changes that were made in earnest helps a model of that name most, if one does."""
     widths, growths = effect["width_after"].values, effect["growth_after"].values
     now = float(rpm(changes.unstable_width(tongues)))
     growth = max((tongue.growth_rate for tongue in tongues), default=0.0)

@@ -155,6 +155,15 @@ def resonance_bands(
     parametric frequency alone varies. Where they change with speed use :func:`band_speeds`. Differences of
     frequencies within three times their coupling are left out: a modulation as slow as the growth it causes
     is not averaged.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = fg.Transverse(body, fg.MeshLoad(stiffness=0.6, damping=3e-6, mass=1.0))
+    >>> bands = fg.resonance_bands(model.system(fg.rad_per_s(530.0)))
+    >>> print(f"{bands[0].lower:.0f} to {bands[0].upper:.0f} rad/s, up to {bands[0].growth_rate:.2f} 1/s")
+    781 to 784 rad/s, up to 0.89 1/s
     """
     expansion = _expanded(system, order, reach)
     _refuse_unstable_mean(expansion)

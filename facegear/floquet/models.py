@@ -88,6 +88,23 @@ class WithoutRigidMotion:
     ----------
     model : Model
         Such as a train of gears on shafts that hang on nothing.
+
+    Examples
+    --------
+    Two masses on one spring, which nothing holds: of two coordinates one is left.
+
+    >>> from dataclasses import dataclass
+    >>> import numpy as np
+    >>> import facegear as fg
+    >>> @dataclass(frozen=True)
+    ... class Pair:
+    ...     coordinates = ()
+    ...
+    ...     def system(self, speed):
+    ...         spring = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    ...         return fg.PeriodicSystem(np.eye(2), 0.01 * spring, spring, (), period=1.0 / speed)
+    >>> fg.WithoutRigidMotion(Pair()).system(2.0).size
+    1
     """
 
     model: Model
@@ -288,6 +305,14 @@ def replace_parameter(model: ModelT, name: str, value: float) -> ModelT:
     ------
     TypeError, ValueError
         From :func:`parameter_path`, or from the model's own check of the value.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = fg.Transverse(body, fg.MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> fg.replace_parameter(model, "thickness_ratio", 0.05).body.thickness_ratio
+    0.05
     """
     replaced: ModelT = replace_at(model, parameter_path(model, name), value)
     return replaced

@@ -355,6 +355,14 @@ def transition_matrix(system: PeriodicSystem, method: Method | None = None) -> F
     -------
     array, shape (2n, 2n)
         Where the period's origin is a breakpoint with a velocity kick, Φ runs from just before it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import facegear as fg
+    >>> free = fg.PeriodicSystem([[1.0]], [[0.0]], [[1.0]], (), period=1.0)
+    >>> bool(np.allclose(fg.transition_matrix(free), [[np.cos(1.0), np.sin(1.0)], [-np.sin(1.0), np.cos(1.0)]]))
+    True
     """
     return np.asarray(transition_matrices([system], method)[0])
 
@@ -393,6 +401,14 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
     Returns
     -------
     array of complex, shape (2n,)
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import facegear as fg
+    >>> free = fg.PeriodicSystem([[1.0]], [[0.0]], [[1.0]], (), period=1.0)
+    >>> bool(np.allclose(fg.multipliers(free).real, np.cos(1.0)))
+    True
     """
     family = Family([system])
     values = _eigenvalues(with_method(method, lambda chosen: chosen.scaled_transition_matrices(family))[0])
@@ -404,6 +420,14 @@ def growth_rate(system: PeriodicSystem, method: Method | None = None) -> float:
 
     Where all motions die within a period it is known no better than max|λ|, whose error is relative to 1; minus
     infinity where nothing at all is left.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = fg.Transverse(body, fg.MeshLoad(stiffness=0.6, damping=3e-6, mass=1.0))
+    >>> [fg.growth_rate(model.system(fg.rad_per_s(speed))) > 0.0 for speed in (530.0, 600.0)]
+    [True, False]
     """
     radius = np.abs(multipliers(system, method)[0])
     with np.errstate(divide="ignore"):
@@ -434,6 +458,14 @@ def error_estimate(system: PeriodicSystem, method: Method | None = None) -> floa
     -------
     float
         In the units of a multiplier [-].
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = fg.Transverse(body, fg.MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> fg.error_estimate(model.system(fg.rad_per_s(600.0))) < 1e-6
+    True
     """
     judged = with_method(method, lambda chosen: _Judged.of(system, chosen))
     values = judged.values

@@ -74,6 +74,18 @@ class ContactLoad:
     ------
     TypeError, ValueError
         Naming the parameter and what would be valid.
+
+    Examples
+    --------
+    A spring of 4 N/m whose strength varies as in Mathieu's equation, on the one coordinate there is:
+
+    >>> import numpy as np
+    >>> import facegear as fg
+    >>> shape = fg.PiecewiseChebyshev.constant([1.0])
+    >>> factor = fg.PiecewiseChebyshev.fit(lambda s, piece: 1.0 + 0.2 * np.cos(2.0 * np.pi * s)[:, None], [0.0])
+    >>> load = fg.ContactLoad(shape, stiffness=4.0, weight=factor)
+    >>> round(float(load.weight(0.5)[0]), 12)
+    0.8
     """
 
     shape: PiecewiseChebyshev
@@ -171,6 +183,15 @@ class StateJump:
     ------
     TypeError, ValueError
         Naming the parameter and what would be valid.
+
+    Examples
+    --------
+    The impact of a point with a coefficient of restitution of 0.8 turns its velocity round:
+
+    >>> import facegear as fg
+    >>> jump = fg.StateJump(fraction=0.5, matrix=[[1.0, 0.0], [0.0, -0.8]])
+    >>> jump.matrix.shape
+    (2, 2)
     """
 
     fraction: float
@@ -212,6 +233,19 @@ class PeriodicSystem:
     TypeError, ValueError
         If shapes do not match, entries are not finite, the mass is not symmetric positive definite, or the
         period is not positive.
+
+    Examples
+    --------
+    Mathieu's equation q̈ + 0.02 q̇ + (1 + 0.2 cos 2t) q = 0, at its principal resonance:
+
+    >>> import numpy as np
+    >>> import facegear as fg
+    >>> one = fg.PiecewiseChebyshev.constant([1.0])
+    >>> factor = fg.PiecewiseChebyshev.fit(lambda s, piece: 1.0 + 0.2 * np.cos(2.0 * np.pi * s)[:, None], [0.0])
+    >>> load = fg.ContactLoad(one, stiffness=1.0, weight=factor)
+    >>> system = fg.PeriodicSystem([[1.0]], [[0.02]], [[0.0]], (load,), period=np.pi)
+    >>> print(f"{fg.growth_rate(system):.4f} 1/s")
+    0.0399 1/s
     """
 
     mass: FloatArray

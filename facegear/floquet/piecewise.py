@@ -70,6 +70,14 @@ class PiecewiseChebyshev:
     ------
     ValueError
         If breakpoints are not ascending inside [0, 1), or the shapes do not match, or an entry is not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import facegear as fg
+    >>> sine = fg.PiecewiseChebyshev.fit(lambda s, piece: np.sin(2.0 * np.pi * s)[:, None], [0.0])
+    >>> round(float(sine(0.25)[0]), 12)
+    1.0
     """
 
     breakpoints: FloatArray

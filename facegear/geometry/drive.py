@@ -87,6 +87,15 @@ class Drive:
         A value outside its range; a shaper tooth pointed below its addendum circle (too few teeth);
         undercutting that reaches beyond the pointing radius, so that no face width is left; a shaft angle above 90°
         at which the shaper cuts off every contact line again.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> drive = fg.Drive(26, 130, 3.175e-3)
+    >>> print(f"{drive.inner_radius * 1e3:.1f} to {drive.outer_radius * 1e3:.1f} mm")
+    188.4 to 231.9 mm
+    >>> print(f"{drive.contact_ratio:.3f} by Tregold, {drive.geometric_contact_ratio:.3f} by the contact lines")
+    1.553 by Tregold, 3.286 by the contact lines
     """
 
     pinion_teeth: int

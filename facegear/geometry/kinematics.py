@@ -251,6 +251,16 @@ class ContactPath(TimedPairs):
     ------
     TypeError, ValueError
         `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> drive = fg.Drive(26, 130, 3.175e-3)
+    >>> path = fg.ContactPath(drive)
+    >>> path.contact_ratio == drive.contact_ratio
+    True
+    >>> fg.ContactPath(drive, contact_ratio=drive.geometric_contact_ratio).contact_ratio > path.contact_ratio
+    True
     """
 
     has_lengths: ClassVar[bool] = True
@@ -525,6 +535,15 @@ class SkewLine(TimedPairs):
     ------
     TypeError, ValueError
         `contact_ratio` is not a number, below 1, or above the number of pinion teeth.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> pinion = fg.MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0)
+    >>> model = fg.Transverse(body, pinion, contact=fg.Contact(fg.SkewLine, "mean"))
+    >>> model.system(fg.rad_per_s(600.0)).size
+    14
     """
 
     @property

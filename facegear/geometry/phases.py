@@ -53,6 +53,14 @@ def phase_split(drive: Drive, pinion_angles: ArrayLike) -> PhaseSplit:
     ------
     TypeError, ValueError
         Not numeric, not finite, or beyond one turn.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import facegear as fg
+    >>> split = fg.phase_split(fg.Drive(26, 130, 3.175e-3), [0.0, 2.0 * np.pi / 3.0])
+    >>> split.teeth.tolist(), split.phase.round(4).tolist()
+    ([0, 43], [0.0, 0.3333])
     """
     angles = parameters.finite_array("pinion_angles", pinion_angles, "rad")
     beyond = np.abs(angles) > 2.0 * math.pi * (1.0 + _WHOLE_PITCH)

@@ -77,6 +77,15 @@ class Misalignment:
     ------
     TypeError, ValueError
         If a value is not a finite number, a length more than 0.1 m (`pivot`: 100 m), or the angle more than 0.1 rad.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> drive = fg.Drive(26, 130, 3.175e-3, shaper_teeth=28)
+    >>> nominal = fg.UnloadedContact(drive)
+    >>> shifted = fg.UnloadedContact(drive, fg.Misalignment(gear_axial=2e-5))
+    >>> bool(shifted.backlash < nominal.backlash)
+    True
     """
 
     offset: float = 0.0

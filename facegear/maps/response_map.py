@@ -143,6 +143,17 @@ def response_map(
         Naming the argument.
     ArithmeticError
         As for :func:`frequency_response`.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = fg.Transverse(body, fg.MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> unit = fg.PiecewiseChebyshev.constant([1.0] + [0.0] * 13)
+    >>> excited = fg.Excited(model, force=unit)
+    >>> data = fg.response_map(excited, fg.rad_per_s([700.0, 800.0]), "stiffness", [0.5, 1.0], jobs=1)
+    >>> dict(data.sizes)
+    {'stiffness': 2, 'speed': 2, 'load': 1}
     """
     require_model(model)
     jobs = number_of_workers("jobs", jobs)

@@ -120,6 +120,15 @@ def tongues(
         the threshold is below what that leaves of a multiplier.
     ArithmeticError
         If transition matrices do not vary smoothly with speed, or are not known well enough for the threshold.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = fg.Transverse(body, fg.MeshLoad(stiffness=0.6, damping=3e-6, mass=1.0))
+    >>> for tongue in fg.tongues(model, fg.rad_per_s([545.0, 555.0])):
+    ...     print(f"{tongue.label}: {fg.rpm(tongue.lower):.1f} to {fg.rpm(tongue.upper):.1f} rpm")
+    (1+8)/1: 545.0 to 549.5 rpm
     """
     require_model(model)
     low, high = ascending("speeds", speeds, "rad/s")

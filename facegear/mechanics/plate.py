@@ -267,6 +267,13 @@ class Body:
     ------
     TypeError, ValueError
         If an argument is of the wrong kind or outside its range.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> body.natural_frequencies_hz().round().astype(int).tolist()  # rows: nodal circles, columns: diameters
+    [[169, 159, 209, 399], [1059, 1128, 1355, 1765]]
     """
 
     drive: Drive

@@ -164,6 +164,13 @@ class Gearbox:
     ------
     TypeError, ValueError
         A value of the wrong kind or outside its range.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> gearbox = fg.Gearbox(fg.Drive(20, 100, 4e-3), 1.0e-3, 0.5, 2.0, 3e8, 300.0, 2e4, 1.0, 2e5, 10.0)
+    >>> fg.Torsional(gearbox).system(fg.rad_per_s(600.0)).size
+    3
     """
 
     drive: Drive

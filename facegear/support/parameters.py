@@ -325,17 +325,35 @@ def _converted(name: str, values: ArrayLike, factor: float) -> Any:
 
 
 def rad_per_s(speed_rpm: ArrayLike) -> Any:
-    """Convert revolutions per minute to rad/s; a number gives a number, an array an array."""
+    """Convert revolutions per minute to rad/s; a number gives a number, an array an array.
+
+    Examples
+    --------
+    >>> round(rad_per_s(600.0), 4)
+    62.8319
+    """
     return _converted("speed_rpm", speed_rpm, math.pi / 30.0)
 
 
 def rpm(speed: ArrayLike) -> Any:
-    """Convert rad/s to revolutions per minute; a number gives a number, an array an array."""
+    """Convert rad/s to revolutions per minute; a number gives a number, an array an array.
+
+    Examples
+    --------
+    >>> round(rpm(62.8319), 2)
+    600.0
+    """
     return _converted("speed", speed, 30.0 / math.pi)
 
 
 def watt(power_hp: ArrayLike) -> Any:
-    """Convert horsepower (745.69987 W) to watt; a number gives a number, an array an array."""
+    """Convert horsepower (745.69987 W) to watt; a number gives a number, an array an array.
+
+    Examples
+    --------
+    >>> round(watt(1000.0))
+    745700
+    """
     return _converted("power_hp", power_hp, WATT_PER_HORSEPOWER)
 
 
@@ -406,6 +424,12 @@ class MeshLoad:
     ------
     TypeError, ValueError
         A value is not a number or outside the range named above.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> fg.MeshLoad(stiffness=0.6, damping=3e-6, mass=1.0)
+    MeshLoad(stiffness=0.6, damping=3e-06, mass=1.0)
     """
 
     stiffness: float = field(metadata=designed("bearing stiffness"))

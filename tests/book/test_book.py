@@ -456,6 +456,19 @@ def test_search_is_reached_by_keyboard_from_any_page(visit: Callable[..., Visit]
     assert not opened.strangers
 
 
+def test_names_in_code_lead_to_their_place(visit: Callable[..., Visit]) -> None:
+    page = visit("notebooks/04_one_pinion.html").page
+    links = page.locator("a.code-link")
+    targets = {
+        urlsplit(address).fragment for address in links.evaluate_all("links => links.map(a => a.href)")
+    }
+    assert {"facegear.Drive", "facegear.Transverse", "facegear.stability_map"} <= targets
+    links.first.click()
+    page.wait_for_url("**/api.html#facegear.*")
+    missing = [name for name in targets if page.locator(f'[id="{name}"]').count() != 1]
+    assert not missing
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_title_page_says_in_one_screen_what_the_book_is(visit: Callable[..., Visit], scheme: str) -> None:
     page = visit("intro.html", width=1200, scheme=scheme).page

@@ -103,3 +103,73 @@ def test_bibtex_says_what_the_citation_file_says():
     assert text.count("{") == text.count("}")
     for value in (cff["title"], cff["version"], cff["references"][0]["title"], "Peng, Meng", "year = {2012}"):
         assert value in text
+
+
+def figure_cell(source, name="fig-x", caption="A map."):
+    cell = nbformat.v4.new_code_cell(source)
+    cell.metadata.mystnb = {"figure": {"name": name, "caption": caption}}
+    return cell
+
+
+@pytest.mark.parametrize(
+    ("cell", "names"),
+    [
+        (figure_cell('data = chapter.figure("ch02_swing", swing(1))'), ["ch02_swing"]),
+        (
+            figure_cell('chapter.figure(\n    "ch02_swing", a)\nchapter.figure("ch02_lost", b)'),
+            ["ch02_swing"],
+        ),
+        (figure_cell("draw(charts)", "fig-4-4"), ["ch04_figure_4_04a", "ch04_figure_4_04b"]),
+        (figure_cell("draw(charts)", "fig-4-4b"), ["ch04_figure_4_04b"]),
+        (figure_cell("draw(charts)", "fig-4-4-true"), []),
+        (figure_cell("draw(charts)", "fig-4-9"), []),
+        (figure_cell("draw(charts)"), []),
+    ],
+)
+def test_caption_offers_the_numbers_that_the_cell_shows(cell, names):
+    stored = {"ch02_swing", "ch04_figure_4_04a", "ch04_figure_4_04b", "ch04_figure_4_14"}
+    pages.offer_numbers(cell, stored)
+    caption = cell.metadata.mystnb.figure.caption
+    assert [word for word in stored if f"<../data/{word}.nc>" in caption] == [
+        word for word in stored if word in names
+    ]
+    assert caption.startswith("A map." + (" Numbers: {download}`" if names else ""))
+
+
+def test_caption_that_offers_numbers_itself_and_cells_without_figure_are_left_alone():
+    own = figure_cell(
+        'chapter.figure("ch02_swing", a)', caption="A map: {download}`x <../data/ch02_swing.nc>`."
+    )
+    plain = nbformat.v4.new_code_cell('chapter.figure("ch02_swing", a)')
+    for cell in (own, plain):
+        before = str(cell)
+        pages.offer_numbers(cell, {"ch02_swing"})
+        assert str(cell) == before
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("off by 1.6e-06 of it", "off by 1.6·10⁻⁶ of it"),
+        ("1e-12; -2.5e+08 N/m", "10⁻¹²; -2.5·10⁸ N/m"),
+        ("| 1.047e+04 | 5.6e-04 | 3e-2 |", "| 10470 | 0.00056 | 0.03 |"),
+        ("$k_m$ = 1.5763e+08 N/m", "$k_m$ = 1.5763·10⁸ N/m"),
+        ("$k = 1.5e+08$", r"$k = 1.5\cdot 10^{8}$"),
+        ("`rtol=1e-9` and\n```python\nx = 1e-9\n```", "`rtol=1e-9` and\n```python\nx = 1e-9\n```"),
+        ("| -0.00 | −0 | -0.05 | 3-0 |", "| 0.00 | 0 | -0.05 | 3-0 |"),
+        ("module_1e5 and 2.1e", "module_1e5 and 2.1e"),
+    ],
+)
+def test_numbers_are_put_in_a_readers_digits(written, read):
+    assert pages.in_readers_digits(written) == read
+
+
+def test_outputs_are_put_in_a_readers_digits_and_what_code_prints_is_not():
+    cell = nbformat.v4.new_code_cell("1e-9")
+    table = nbformat.v4.new_output("display_data", {"text/markdown": "| 1e-9 |", "text/plain": "1e-9"})
+    quoted = nbformat.v4.new_output("display_data", {"application/papermill.record/text/plain": "'2e-9'"})
+    cell.outputs = [table, quoted, nbformat.v4.new_output("stream", name="stdout", text="1e-9")]
+    pages.put_outputs_in_readers_digits(cell)
+    assert cell.outputs[0].data == {"text/markdown": "| 10⁻⁹ |", "text/plain": "1e-9"}
+    assert cell.outputs[1].data == {"application/papermill.record/text/plain": "'2·10⁻⁹'"}
+    assert cell.outputs[2].text == "1e-9"

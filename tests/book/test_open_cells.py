@@ -1,0 +1,73 @@
+"""A stranger copies the code that lies open on a chapter's page, from its first cell on, and it runs."""
+
+import ast
+import contextlib
+import io
+import re
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+from IPython.display import display
+
+from tests.book.open_cells import code_cells, is_open, needed, python
+
+ROOT = Path(__file__).resolve().parents[2]
+CHAPTERS = sorted((ROOT / "notebooks").glob("0*.ipynb"))
+
+chapters = pytest.mark.parametrize("path", CHAPTERS, ids=lambda path: path.stem)
+
+
+@pytest.mark.parametrize(
+    ("source", "needs", "defines"),
+    [
+        ("import numpy as np\nx = np.sin(y)", {"y"}, {"np", "x"}),
+        ("x = x + 1", {"x"}, {"x"}),
+        ("x += 1", {"x"}, {"x"}),
+        ("a = [k for k in rows]\nfor k in a:\n    b = k", {"rows"}, {"a", "k", "b"}),
+        ("def f(t):\n    return f(t) + g(t)", {"g"}, {"f"}),
+        ("def f():\n    return late\nlate = 1", {"late"}, {"f", "late"}),
+        ("%matplotlib inline\nprint(len(z))", {"z"}, set()),
+    ],
+)
+def test_names_are_told_that_a_cell_needs(source, needs, defines):
+    found = needed(source)
+    assert found[0] == needs
+    assert defines <= found[1]
+
+
+@chapters
+def test_open_cells_need_nothing_that_is_folded(path):
+    defined = set()
+    for cell in code_cells(path):
+        if is_open(cell):
+            needs, defines = needed(cell.source)
+            assert needs <= defined, cell.source
+            defined |= defines
+
+
+@chapters
+def test_open_cells_take_nothing_from_the_books_own_code(path):
+    for cell in filter(is_open, code_cells(path)):
+        for node in ast.walk(ast.parse(python(cell.source))):
+            names = [node.module] if isinstance(node, ast.ImportFrom) else []
+            names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            assert not [name for name in names if name.split(".")[0] in ("compendium", "myst_nb")], (
+                cell.source
+            )
+
+
+def on_a_coarse_grid(source):
+    """Make every axis of more than four values one of four."""
+    return re.sub(r"(np\.linspace\([^()]*, )(\d+)\)", lambda m: f"{m[1]}{min(int(m[2]), 4)})", source)
+
+
+@pytest.mark.slow
+@chapters
+def test_open_cells_run_as_a_script(path, monkeypatch):
+    monkeypatch.chdir(path.parent)
+    mpl.use("Agg")
+    names = {"display": display, "__name__": "__main__"}
+    for cell in filter(is_open, code_cells(path)):
+        with contextlib.redirect_stdout(io.StringIO()):
+            exec(compile(on_a_coarse_grid(python(cell.source)), path.name, "exec"), names)

@@ -1,0 +1,51 @@
+"""The page of public names, and how references in docstrings are resolved."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import facegear as fg
+from tools.public_names import candidates, found, public_name
+
+PAGE = Path(__file__).resolve().parents[2] / "book" / "api.md"
+
+
+def test_page_has_every_public_name_once():
+    described = re.findall(
+        r"^\.\. auto(?:class|function|data):: (\w+)$", PAGE.read_text("utf-8"), re.MULTILINE
+    )
+    assert sorted(described) == sorted(fg.__all__)
+
+
+def test_page_lists_at_the_head_of_a_section_what_the_section_has():
+    for section in PAGE.read_text("utf-8").split("\n## ")[1:]:
+        listed = re.findall(r"^   (\w+)$", section, re.MULTILINE)
+        assert listed == re.findall(r"^\.\. auto(?:class|function|data):: (\w+)$", section, re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", sorted(set(fg.__all__) - {"STEEL"}))
+def test_every_public_name_has_an_example(name):
+    assert ">>> " in getattr(fg, name).__doc__
+
+
+def test_name_is_followed_from_its_module_on():
+    assert found("facegear.floquet.multipliers.with_method")[-1] is not None
+    assert found("facegear.floquet.periodic.PeriodicSystem.fourier")[-1] is fg.PeriodicSystem.fourier
+    assert found("facegear.support.parameters.MeshLoad.stiffness")  # a field without default
+    assert found("facegear.floquet.multipliers.no_such_method") == []
+    assert found("no_such_package.name") == []
+
+
+def test_short_name_is_looked_for_in_the_class_and_in_the_module_of_its_docstring():
+    near = candidates("jumps", "facegear.PeriodicSystem.state_jumps")
+    assert near[:2] == ["facegear.floquet.periodic.PeriodicSystem.jumps", "facegear.floquet.periodic.jumps"]
+    assert (
+        candidates("band_speeds", "facegear.floquet.hsu.resonance_bands")[0]
+        == "facegear.floquet.hsu.band_speeds"
+    )
+
+
+def test_public_object_is_known_by_where_it_is_defined_too():
+    assert public_name(found("facegear.maps.stability_map.stability_map")[-1]) == "stability_map"
+    assert public_name(found("facegear.floquet.multipliers.with_method")[-1]) == ""
