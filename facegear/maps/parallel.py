@@ -149,22 +149,27 @@ def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
     from threadpoolctl import threadpool_limits
 
-    _end_with_parent()
+    _begin_as_worker()
     with threadpool_limits(limits=1):
         return function(*arguments)
 
 
 @cache
-def _end_with_parent() -> None:
-    """End this process, if joblib started it on this machine, within a second after the one that did has gone.
+def _begin_as_worker() -> None:
+    """Let this process, if joblib started it on this machine, leave nothing behind when it is ended.
 
-    joblib's own workers go on when their parent is killed: with what they are at, and then waiting for more.
+    It ends within a second after the process that started it has gone; joblib's own workers go on when their parent is
+    killed, with what they are at, and then waiting for more. And progress bars, of which a worker shows none, take a
+    lock of its threads in place of a semaphore of the system, which stays when a worker is killed.
     """
     from multiprocessing import current_process, parent_process
+
+    from tqdm import tqdm
 
     starter = parent_process()
     if starter is None or not current_process().name.startswith("LokyProcess"):
         return
+    tqdm.set_lock(threading.RLock())
     # Not whoever is the parent now: the one that started this process may be gone already.
     parent = starter.pid
 
