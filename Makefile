@@ -28,7 +28,7 @@ chapter: environment ## execute and check one notebook: make chapter NAME=03_geo
 	@test -f 'notebooks/$(NAME).ipynb' || { echo 'There is no notebooks/$(NAME).ipynb. Say for example: make chapter NAME=03_geometry_and_meshing'; exit 2; }
 	@$(PYTHON) tools/build.py 'notebook:$(NAME)' && echo 'Executed: build/executed/$(NAME).ipynb'
 
-drive: environment ## report on a drive of your own: make drive FILE=my_drive.yaml
+drive: environment ## facegear report on a drive of your own: make drive FILE=my_drive.yaml
 	@test -n '$(FILE)' || { echo 'Say which file, for example: make drive FILE=data/drives/case_2.yaml'; exit 2; }
 	@test -f '$(FILE)' || { echo 'There is no file $(FILE)'; exit 2; }
 	@$(PYTHON) -m facegear report '$(FILE)'

@@ -102,6 +102,7 @@ examples:
   facegear new my_drive.yaml          write a drive file, asking what is needed
   facegear check my_drive.yaml        can it be used?
   facegear report my_drive.yaml       the verdict, in my_drive_results/report.html
+  facegear assess my_drive.yaml       and under every model that could change it
 
 `facegear COMMAND --help` has examples of each.
 {_CODES}""",
@@ -112,6 +113,7 @@ examples:
     _add_examples(commands)
     _add_check(commands)
     _add_report(commands)
+    _add_assess(commands)
     _add_map(commands)
     _add_explore(commands)
     return top
@@ -156,6 +158,28 @@ def _add_report(commands: Any) -> None:
         help="part of the speeds that may still move from one basis to the next (%(default)s)",
     )
     command.add_argument("--most-steps", type=_whole, default=5, help="bases that are tried (%(default)s)")
+    _add_jobs(command)
+
+
+def _add_assess(commands: Any) -> None:
+    command = _command(
+        commands,
+        "assess",
+        _assess,
+        "verdict under every model that could change it, and within tolerances",
+        """\
+  facegear assess my_drive.yaml
+  facegear assess my_drive.yaml --output results --jobs 2
+
+A first verdict comes within seconds, the page in some minutes for one pinion. Tolerances are a section of the file.""",
+    )
+    command.add_argument("file", metavar="FILE", help="drive file (YAML)")
+    command.add_argument(
+        "--output",
+        metavar="FOLDER",
+        type=Path,
+        help="where it goes; FILE_assessment beside the file if left out",
+    )
     _add_jobs(command)
 
 
@@ -230,7 +254,7 @@ def _add_explore(commands: Any) -> None:
         _explore,
         "controls and a stability map to click on, in a browser",
         """\
-  facegear explore                    the drive of Fig. 4.4(a)
+  facegear explore                    the example case_1
   facegear explore my_drive.yaml
   facegear explore --no-browser --port 8866
 
@@ -338,6 +362,19 @@ def _report(options: argparse.Namespace) -> int:
     return DONE
 
 
+def _assess(options: argparse.Namespace) -> int:
+    file = read_drive_file(options.file)
+    # These take longer to load than a mistake takes to be told.
+    from facegear.drives.assess import assess
+    from facegear.drives.assessment_files import assessment_directory, write_assessment
+
+    found = assess(file, jobs=options.jobs, tell=_say)
+    page = write_assessment(found, options.output or assessment_directory(options.file))
+    _tell(found.headline)
+    _tell(f"The assessment: {page.resolve().as_uri()}")
+    return DONE
+
+
 def _check(options: argparse.Namespace) -> int:
     code = DONE
     for name in options.files:
@@ -440,6 +477,7 @@ def _explore(options: argparse.Namespace) -> int:
     if lacking := uninstalled():
         _say(f'facegear explore needs {", ".join(lacking)}: pip install "facegear[explore]"')
         return REFUSED
-    if options.file is not None:
-        read_drive_file(options.file)
+    from facegear.drives.file_study import study_of
+
+    study_of(options.file)  # What cannot be explored is told here, not in a browser.
     return serve(options.file, options.port, browser=not options.no_browser)

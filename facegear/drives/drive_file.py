@@ -28,6 +28,7 @@ from facegear.drives.drive_keys import (
 )
 from facegear.drives.flexible_teeth import FlexibleTeeth
 from facegear.drives.forces import RIM, pressed
+from facegear.drives.tolerances import AS_GIVEN, Tolerances
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
 from facegear.mechanics.backlash import Backlash
@@ -81,6 +82,8 @@ class DriveFile:
         The gearbox with play of its teeth, under the torque of one pinion's power; None where there is no play.
     force_at : str
         Where the driving force presses, one of :data:`facegear.drives.forces.PLACES`.
+    tolerances : Tolerances
+        How far stiffness, damping and speed may be from that.
     content : mapping
         What the file says, as it says it: keys and values by section. No part of what makes two drives equal.
     """
@@ -94,6 +97,7 @@ class DriveFile:
     roles: tuple[Role, ...] | None = None
     play: Backlash | None = None
     force_at: str = RIM
+    tolerances: Tolerances = AS_GIVEN
     content: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -416,7 +420,10 @@ def _built(found: _Found) -> DriveFile:
         "operation",
         lambda: [pressed(force_at, each, drive).points(drive) for each in contacts.values()],
     )
-    return DriveFile(found.name, transverse, requirements, contacts, torsional, teeth, roles, play, force_at)
+    tolerances = Tolerances(**values["tolerances"])
+    return DriveFile(
+        found.name, transverse, requirements, contacts, torsional, teeth, roles, play, force_at, tolerances
+    )
 
 
 def _faces(teeth: dict[str, Any] | None, pinions: int) -> Sequence[int]:
@@ -579,6 +586,7 @@ def _check_angles(drive: Drive, angles: Sequence[float], faces: Sequence[int]) -
 def _requirements(found: _Found, body: Body) -> Requirements:
     operation = found.values["operation"]
     low, high, limit = operation["lowest_speed"], operation["highest_speed"], fastest_speed(body)
+    fastest = high * (1.0 + found.values["tolerances"]["speed"])
     if not high / WIDEST_SPEED_RATIO <= low * (1 + 1e-12) or not low < high:
         raise ValueError(
             f"operation.lowest_speed_rpm must be lower than operation.highest_speed_rpm = {rpm(high):.6g} rpm and at "
@@ -588,6 +596,12 @@ def _requirements(found: _Found, body: Body) -> Requirements:
         raise ValueError(
             f"operation.highest_speed_rpm must be at most {rpm(limit):.6g} rpm for this body, whose rim then moves "
             f"{FASTEST_SPIN:g} times as fast as sound in its material, got {rpm(high):.6g} rpm"
+        )
+    if fastest > limit:
+        raise ValueError(
+            f"tolerances.speed_percent must be at most {100 * (limit / high - 1):.6g} for this body, whose rim then "
+            f"moves {FASTEST_SPIN:g} times as fast as sound in its material, got "
+            f"{100 * found.values['tolerances']['speed']:.6g}"
         )
     duty = (operation["power"], operation["pinion_speed"], operation["safety_factor"])
     return _by_model(found, "operation", lambda: Requirements(*duty, (low, high)))

@@ -40,11 +40,14 @@ PER_SI: Mapping[str, float] = MappingProxyType(
         "hp": 1 / WATT_PER_HORSEPOWER,
         "GPa": 1e-9,
         "MPa": 1e-6,
+        "%": 100.0,
     }
 )
 # Value in SI is this divided by the value in the file.
 OVER_SI: Mapping[str, float] = MappingProxyType({"1/in": 25.4e-3})
-_UNIT_IN_NAME = re.compile(r"_(mm|um|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad)$")
+_UNIT_IN_NAME = re.compile(
+    r"_(mm|um|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad|percent)$"
+)
 
 
 def plain(meaning: str) -> str:
@@ -461,6 +464,24 @@ _SECOND_GEAR = Section(
     required=False,
 )
 
+
+def _tolerance(name: str, meaning: str) -> Key:
+    return Key(name, meaning, "number", "%", 0.1, 50.0, or_zero=True, default=0.0)
+
+
+_TOLERANCES = Section(
+    "How far the drive may be from what the file says, to either side, for `facegear assess`.",
+    (
+        _tolerance("stiffness_percent", "of stiffness: bearings and flexible teeth together"),
+        _tolerance(
+            "damping_percent", "of damping: bearings, flexible teeth and the body's material together"
+        ),
+        _tolerance("speed_percent", "of speed: below the lowest and above the highest operating speed"),
+    ),
+    required=False,
+    assumed=True,
+)
+
 SECTIONS: Mapping[str, Section] = MappingProxyType(
     {
         "gears": _GEARS,
@@ -471,6 +492,7 @@ SECTIONS: Mapping[str, Section] = MappingProxyType(
         "second_gear": _SECOND_GEAR,
         "operation": _OPERATION,
         "gearbox": _GEARBOX,
+        "tolerances": _TOLERANCES,
     }
 )
 """Keys of a drive file, section by section."""

@@ -15,6 +15,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from facegear.drives.cell import UNSTABLE, CellDetail, cell_detail
+from facegear.drives.drive_file import parse_drive
+from facegear.drives.drive_text import drive_text
 from facegear.floquet.models import Model, replace_parameter
 from facegear.maps.stability_map import stability_map
 from facegear.support.parameters import finite, integer_at_least, keep, positive
@@ -141,6 +143,9 @@ class Study:
         The highest speed on the horizontal axis; its label is that of the axis.
     columns, rows : int
         Speeds and values of the map, at least 2.
+    content : callable, optional
+        Settings in SI units to what a drive file says that means the same, keys and values by section; None where
+        there is no such file.
     """
 
     controls: tuple[Control, ...]
@@ -149,6 +154,7 @@ class Study:
     speed: Quantity
     columns: int = READING_COLUMNS
     rows: int = READING_ROWS
+    content: Callable[[Settings], Mapping[str, Any]] | None = None
 
     def __post_init__(self) -> None:
         names = [control.name for control in (*self.controls, self.speed)]
@@ -195,7 +201,24 @@ class Study:
         TypeError, ValueError, ArithmeticError
             If they do not go together.
         """
-        converted = {
+        return self.build(self._in_si(settings))
+
+    def drive_text(self, settings: Settings) -> str:
+        """Text of the drive file that means the same as settings as shown.
+
+        Raises
+        ------
+        ValueError
+            If there is no such file, or no valid one.
+        """
+        if self.content is None:
+            raise ValueError("settings must be those of a drive to be written as a drive file")
+        text = drive_text(self.content(self._in_si(settings)))
+        parse_drive(text, "these settings")
+        return text
+
+    def _in_si(self, settings: Settings) -> dict[str, Any]:
+        return {
             control.name: (
                 control.si(settings[control.name])
                 if isinstance(control, Quantity)
@@ -203,7 +226,6 @@ class Study:
             )
             for control in (*self.controls, self.speed)
         }
-        return self.build(converted)
 
     def axes(self, settings: Settings, vertical: str) -> tuple[FloatArray, FloatArray]:
         """Speeds [rad/s] and values [SI] of a map.
@@ -411,4 +433,15 @@ def shown_only(study: Study, names: Sequence[str]) -> Study:
     def build(settings: Settings) -> Model:
         return study.build(hidden | dict(settings))
 
-    return replace(study, controls=tuple(known[name] for name in names), build=build)
+    content = study.content
+
+    def said(settings: Settings) -> Mapping[str, Any]:
+        assert content is not None
+        return content(hidden | dict(settings))
+
+    return replace(
+        study,
+        controls=tuple(known[name] for name in names),
+        build=build,
+        content=None if content is None else said,
+    )

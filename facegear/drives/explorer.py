@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from decimal import Decimal
 from html import escape
+from pathlib import Path
 from typing import Any
 
 import ipywidgets
@@ -72,6 +73,8 @@ class MapExplorer:
     ----------
     study : Study
         What is explored.
+    folder : str or Path
+        Where drive files are saved.
 
     Attributes
     ----------
@@ -87,12 +90,17 @@ class MapExplorer:
         What was refused; how far the map is; the cell in words.
     picture : ipywidgets.HTML
         The cell drawn.
+    name, save : ipywidgets.Text, ipywidgets.Button
+        Name of a drive file, and what writes it as the controls stand; for studies of a drive.
+    saved : ipywidgets.HTML
+        What became of it.
     widget : ipywidgets.Widget
         All of it.
     """
 
-    def __init__(self, study: Study) -> None:
+    def __init__(self, study: Study, folder: str | Path = ".") -> None:
         self.study = study
+        self.folder = Path(folder)
         self.controls = {control.name: _control(control) for control in (*study.controls, study.speed)}
         self.controls[study.speed.name].description = f"highest {study.speed.label}"
         self.vertical = ipywidgets.Dropdown(
@@ -105,6 +113,10 @@ class MapExplorer:
         for slider in (self.column, self.row):
             slider.readout, slider.continuous_update = False, False
         self.message, self.status, self.report, self.picture = (ipywidgets.HTML() for _ in range(4))
+        self.name = ipywidgets.Text(value="my_drive.yaml", description="drive file", **_look())
+        self.save = ipywidgets.Button(description="Save as drive file")
+        self.save.on_click(lambda _: self.save_as(self.name.value))
+        self.saved = ipywidgets.HTML()
         # Plotly's widget loses what is changed before a page shows it (Voilà shows it last): complete from the start.
         self._turn = 0
         self._quantity = study.swept(study.vertical)
@@ -184,6 +196,30 @@ class MapExplorer:
     def _moved(self, _change: Any) -> None:
         self._show_cell()
 
+    def save_as(self, name: str) -> None:
+        """Write the drive as the controls have it, or say why not.
+
+        Parameters
+        ----------
+        name : str
+            Of a file in the folder of the explorer; one that is there is not replaced.
+        """
+        try:
+            path = self.folder / Path(name).name
+            if path.name != name or path.suffix not in (".yaml", ".yml"):
+                raise ValueError(
+                    f"name must be that of a file ending in .yaml, without a folder, got {name!r}"
+                )
+            text = self.study.drive_text(self.settings)
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            self.saved.value = _said(f"{path} is there already: choose another name.")
+        except (*_REFUSALS, OSError) as problem:
+            self.saved.value = _said(f"Not saved: {problem}")
+        else:
+            self.saved.value = _said(f"Saved: {path.resolve()}")
+
     def _refuse(self, problem: Exception) -> None:
         self.message.value = (
             f'<p role="alert" style="color:{INK};border-left:4px solid {VERMILION};padding:0 0.6em;'
@@ -244,8 +280,9 @@ class MapExplorer:
         )
 
     def _laid_out(self) -> ipywidgets.Widget:
+        saving = [] if self.study.content is None else [self.name, self.save, self.saved]
         left = ipywidgets.VBox(
-            [self.vertical, *self.controls.values(), self.message],
+            [self.vertical, *self.controls.values(), self.message, *saving],
             layout=ipywidgets.Layout(width="32rem", max_width="100%"),
         )
         right = ipywidgets.VBox(
@@ -363,6 +400,10 @@ def _map_figure(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> go.
 
 def _small(text: str) -> str:
     return f'<p class="facegear-status" style="color:{GREY}">{escape(text)}</p>'
+
+
+def _said(text: str) -> str:
+    return f'<p role="status" style="line-height:1.4;white-space:normal">{escape(text)}</p>'
 
 
 def _png(figure: Figure) -> str:

@@ -91,17 +91,27 @@ class Findings:
         return None if self.file.torsional is None else tuple(tongues(self.file.torsional, self.speeds))
 
     @cached_property
-    def models(self) -> dict[str, Model]:
-        """Model of each case in its last basis, and the torsional one, by name."""
-        models: dict[str, Model] = {case.name: case.found.model for case in self.cases}
-        return models if self.file.torsional is None else models | {TORSION: self.file.torsional}
+    def torsional_failure(self) -> str:
+        """Why the tongues of the gearbox could not be computed; empty where they could, or where there is none."""
+        try:
+            _ = self.torsional_tongues
+        except (ArithmeticError, ValueError) as problem:
+            return str(problem)
+        return ""
 
     @cached_property
     def tongues(self) -> dict[str, tuple[Tongue, ...]]:
-        """Tongues of each model."""
+        """Tongues of each case, and of torsion if there is a gearbox whose tongues could be computed, by name."""
         found = {case.name: case.found.tongues for case in self.cases}
-        torsional = self.torsional_tongues
+        torsional = None if self.torsional_failure else self.torsional_tongues
         return found if torsional is None else found | {TORSION: torsional}
+
+    @cached_property
+    def models(self) -> dict[str, Model]:
+        """Models whose tongues there are, those of cases in their last basis."""
+        models: dict[str, Model] = {case.name: case.found.model for case in self.cases}
+        torsional = self.file.torsional
+        return models if torsional is None or TORSION not in self.tongues else models | {TORSION: torsional}
 
     @cached_property
     def tongue_tables(self) -> dict[str, xr.Dataset]:
@@ -258,11 +268,12 @@ def change_advice(found: Findings) -> tuple[str, ...]:
     return tuple(
         sentence
         for name, effect in found.effects.items()
-        for sentence in _best_change(name, effect, found.tongues[name])
+        for sentence in best_change(name, effect, found.tongues[name])
     )
 
 
-def _best_change(name: str, effect: xr.Dataset, tongues: Sequence[Tongue]) -> list[str]:
+def best_change(name: str, effect: xr.Dataset, tongues: Sequence[Tongue]) -> list[str]:
+    """Say which of the changes that were made in earnest helps a model of that name most, if one does."""
     widths, growths = effect["width_after"].values, effect["growth_after"].values
     now = float(rpm(changes.unstable_width(tongues)))
     growth = max((tongue.growth_rate for tongue in tongues), default=0.0)

@@ -24,19 +24,21 @@ def notebook(drive_file: str | Path | None) -> dict[str, Any]:
     Parameters
     ----------
     drive_file : str or Path, optional
-        Where its controls stand at first; the drive of Fig. 4.4(a) if left out.
+        Where its controls stand at first; the example `case_1` if left out.
 
     Returns
     -------
     dict
         As Jupyter writes it, format 4.5.
     """
+    file = None if drive_file is None else str(Path(drive_file).resolve())
     code = [
-        "from facegear.drives import explorer, studies\n",
-        f"study = studies.study_of({None if drive_file is None else str(Path(drive_file).resolve())!r})\n",
-        "explorer.MapExplorer(study)",
+        "from facegear.drives.explorer import MapExplorer\n",
+        "from facegear.drives.file_study import study_of\n",
+        # Voilà's kernel has another current folder.
+        f"MapExplorer(study_of({file!r}), folder={str(Path.cwd())!r})",
     ]
-    cell: dict[str, object] = {
+    cell: dict[str, Any] = {
         "cell_type": "code",
         "id": "explorer",
         "metadata": {},

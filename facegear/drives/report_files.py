@@ -10,7 +10,7 @@ from typing import Any
 import xarray as xr
 
 from facegear.drives import export, report
-from facegear.drives.findings import Findings
+from facegear.drives.findings import TORSION, Findings
 from facegear.drives.page import Listing, Paragraph, Section, attempted, page
 from facegear.drives.sections import SECTIONS
 from facegear.geometry import solids
@@ -66,9 +66,13 @@ def parts_of(found: Findings) -> dict[str, Callable[[Path], object]]:
     }
     if file.torsional is not None:
         arrays["torsional_map"] = lambda: found.torsional_map
-    if file.play is not None and found.torsional_tongues:
+    try:
+        tongues = found.tongue_tables
+    except (ArithmeticError, ValueError):
+        tongues = {}  # the line of tongues.csv says why
+    if file.play is not None and TORSION in tongues and found.play is not None:
         arrays["play"] = lambda: found.play
-    for name, table in found.tongue_tables.items():
+    for name, table in tongues.items():
         arrays[f"tongues_{file_stem(name)}"] = partial(_same, table)
     drive = file.drive
     title = f"face-gear tooth, N1={drive.pinion_teeth} N2={drive.gear_teeth}"

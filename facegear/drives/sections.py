@@ -33,13 +33,17 @@ def number_table(rows: Sequence[Row], caption: str) -> Table:
 
 def verdict(found: Findings) -> Section:
     """Say whether the drive is safe, and what would help."""
-    said = verdict_of(found.file, found.cases, found.torsional_tongues)
+    said = verdict_of(found.file, found.cases, found.tongues.get(TORSION))
     unstable = any(found.tongues.values())
     parts: list[Part] = [
         Paragraph(f"{found.file.name}.", strong=True),
         Paragraph(said.headline, "bad" if unstable else "good", strong=True),
         Listing(said.findings),
     ]
+    if found.torsional_failure:
+        parts.append(
+            Paragraph(f"Torsion is left out, it could not be computed: {found.torsional_failure}", "bad")
+        )
     if not unstable:
         parts.append(Paragraph(NOTHING_TO_CHANGE))
     else:
@@ -103,7 +107,7 @@ def unstable_speeds(found: Findings) -> Section:
     )
     names = Paragraph(
         "A name such as (1+8)/1 gives the natural frequencies of the mean system that combine, numbered from "
-        "the lowest,"
+        "the lowest, "
         'and how many times the mesh frequency equals their combination; "mean 1" is flutter of the mean system.'
     )
     rows: list[tuple[str, ...]] = []
@@ -199,7 +203,8 @@ def maps(found: Findings) -> Section:
 def torsion(found: Findings) -> Section:
     """Show the torsional vibration of the gearbox, if the file has one."""
     title = "Torsional vibration"
-    if found.torsional_map is None or found.file.torsional is None:
+    # Without its tongues, which may not be there, this section says why.
+    if found.torsional_tongues is None or found.torsional_map is None or found.file.torsional is None:
         return Section(title, (Paragraph("The file has no section gearbox."),))
     own = float(value_of(found.file.torsional, INPUT_STIFFNESS))
     axis = "stiffness of the input shaft [kN m/rad]"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from facegear.drives.explore import Choice, Quantity, Settings, Study
 from facegear.drives.flexible_teeth import CENTROID, FlexibleTeeth
@@ -143,7 +143,7 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
         Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), ratio),
         *_force_controls(start.force, start.contact, drive, highest_speed_rpm),
     )
-    return Study(controls, _drive_model, "stiffness", _speed(highest_speed_rpm))
+    return Study(controls, _drive_model, "stiffness", _speed(highest_speed_rpm), content=_drive_content)
 
 
 def _drive_model(settings: Settings) -> Model:
@@ -157,6 +157,48 @@ def _drive_model(settings: Settings) -> Model:
         contact=_contact(settings, drive),
         force=_force(settings, drive),
     )
+
+
+def _drive_content(settings: Settings) -> dict[str, Any]:
+    """Say in the words of a drive file what settings mean; its power is that at the highest speed."""
+    highest = settings["highest_speed"] / _RPM
+    angles = (0.0, settings["second_angle"], settings["third_angle"])[: int(settings["pinions"])]
+    content = {
+        "name": "From the explorer",
+        "gears": {
+            "pinion_teeth": settings["pinion_teeth"],
+            "gear_teeth": settings["gear_teeth"],
+            "module_mm": settings["module"] * 1e3,
+        },
+        "body": {
+            "thickness_ratio": settings["thickness_ratio"],
+            "bore_radius_mm": settings["bore_radius"] * 1e3,
+        },
+        "pinions": {
+            "stiffness": settings["stiffness"],
+            "damping_us": settings["damping"] * 1e6,
+            "mass": settings["mass"],
+            "angles_deg": [math.degrees(angle) for angle in angles],
+            "contact_ratio": "geometric" if settings["contact_ratio"] == TRUE_SWEEP else "tregold",
+        },
+        "operation": {
+            "lowest_speed_rpm": highest / 20.0,
+            "highest_speed_rpm": highest,
+            "power_kW": settings["power"] * 1e-3,
+            "pinion_speed_rpm": highest * settings["gear_teeth"] / settings["pinion_teeth"],
+            "force_at": PRESSED[settings["force_at"]],
+        },
+    }
+    return {name: _tidied(part) for name, part in content.items()}
+
+
+def _tidied(part: Any) -> Any:
+    """Numbers to twelve digits, without what conversion to SI and back adds."""
+    if isinstance(part, dict):
+        return {name: _tidied(value) for name, value in part.items()}
+    if isinstance(part, list):
+        return [_tidied(value) for value in part]
+    return float(f"{part:.12g}") if isinstance(part, float) else part
 
 
 def _force_controls(

@@ -117,6 +117,11 @@ def parts_of(system: PeriodicSystem) -> Iterator[Any]:
 
 
 def in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]], jobs: int) -> list[T]:
+    """As :func:`each_in_processes`, all results as a list."""
+    return list(each_in_processes(function, work, jobs))
+
+
+def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]], jobs: int) -> Iterator[T]:
     """Call a function with each of several tuples of arguments, in processes of one thread each.
 
     Parameters
@@ -128,15 +133,16 @@ def in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]], jo
     jobs : int
         Number of processes, as joblib's ``n_jobs``.
 
-    Returns
-    -------
-    list
-        Results in the order of `work`.
+    Yields
+    ------
+    object
+        Results in the order of `work`, each as soon as it and those before it are there.
     """
     from joblib import Parallel, delayed
 
     jobs = number_of_workers("jobs", jobs)
-    return list(Parallel(n_jobs=jobs)(delayed(_on_one_thread)(function, *arguments) for arguments in work))
+    tasks = (delayed(_on_one_thread)(function, *arguments) for arguments in work)
+    yield from Parallel(n_jobs=jobs, return_as="generator")(tasks)
 
 
 def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -14,6 +15,8 @@ from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import Page, Playwright, Route
+
+from facegear.drives.drive_file import read_drive_file
 
 pytestmark = [pytest.mark.book, pytest.mark.takes(30)]
 
@@ -122,3 +125,32 @@ def test_explorer_follows_controls_and_clicks_without_a_network(
     browser.close()
     assert not strangers
     assert not complaints
+
+
+def test_the_command_explores_a_drive_file_and_saves_it(tmp_path: Path, chromium_driver: Playwright) -> None:
+    found = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    assert found, "Chromium is missing: apt-get install chromium"
+    shutil.copy(ROOT / "data" / "drives" / "example_b.yaml", tmp_path / "my.yaml")
+    port = free_port()
+    command = [sys.executable, "-m", "facegear", "explore", "my.yaml", "--no-browser", "--port", str(port)]
+    with (tmp_path / "log.txt").open("w", encoding="utf-8") as messages:
+        running = subprocess.Popen(
+            command, cwd=tmp_path, stdout=messages, stderr=messages, env=os.environ | {"OMP_NUM_THREADS": "1"}
+        )
+    try:
+        wait_for(lambda: answers(port) or running.poll() is not None)
+        assert running.poll() is None, (tmp_path / "log.txt").read_text(encoding="utf-8")
+        browser = chromium_driver.chromium.launch(executable_path=found, args=FLAGS)
+        page = browser.new_page(viewport={"width": 1440, "height": 1100})
+        page.set_default_timeout(PATIENCE * 1e3)
+        page.goto(f"http://127.0.0.1:{port}/")
+        page.locator("img.facegear-cell").wait_for()
+        page.get_by_role("button", name="Save as drive file").click()
+        page.get_by_text("Saved: ").wait_for()
+        browser.close()
+    finally:
+        running.send_signal(signal.SIGINT)
+        assert running.wait(30) == 130
+    file, saved = (read_drive_file(tmp_path / name) for name in ("my.yaml", "my_drive.yaml"))
+    assert saved.transverse.gear.body == file.transverse.gear.body
+    assert saved.transverse.gear.load == file.transverse.gear.load

@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 import yaml
 
-from facegear.drives import report, report_files, sections
+from facegear.drives import findings, report, report_files, sections, verdict
 from facegear.drives.drive_file import parse_drive
+from facegear.drives.examples import example_text
 from facegear.drives.findings import Findings
+from facegear.drives.page import attempted
 from facegear.support.labelled import load
 from tests.drives.test_page import Reader
 
@@ -47,6 +49,44 @@ def test_one_part_that_fails_leaves_the_others(results):
     assert "largest stress at the root" in table
     assert "critical power of a pinion" in table
     assert "critical thickness" not in table
+
+
+def test_without_cases_tables_and_meshes_are_still_written(file, tmp_path, monkeypatch):
+    def fails(*_, **__):
+        raise ArithmeticError("no tongue was found")
+
+    monkeypatch.setattr(verdict, "cases", fails)
+    found = Findings(file, cells=3, most_steps=1, jobs=1)
+    page = report_files.write_report(found, tmp_path / "results")
+    written = {path.name for path in page.parent.iterdir()}
+    assert {"summary.csv", "natural_frequencies.csv", "modes.nc", "tooth_mm.stl", "report.html"} <= written
+    assert not {"tongues.csv", "map_dead.nc"} & written
+    text = Reader(page.read_text(encoding="utf-8")).text
+    assert "tongues.csv was not written: no tongue was found" in text
+    assert "contact ratio, Tregold" in text
+
+
+def test_torsion_that_fails_leaves_the_disk(tmp_path, monkeypatch):
+    content = yaml.safe_load(example_text("gearbox_table_7_1"))
+    content["operation"] |= {"lowest_speed_rpm": 970}
+    file = parse_drive(yaml.safe_dump(content))
+
+    def fails(*_, **__):
+        raise ArithmeticError("multipliers are not known")
+
+    monkeypatch.setattr(findings, "tongues", fails)
+    found = Findings(file, cells=3, most_steps=1, jobs=1)
+    assert "torsion" not in found.tongues
+    for title, make, told in (
+        (
+            "Verdict",
+            sections.verdict,
+            "Torsion is left out, it could not be computed: multipliers are not known",
+        ),
+        ("Torsional vibration", sections.torsion, "This part could not be computed"),
+        ("Unstable speeds and safe ones", sections.unstable_speeds, "true sweep, force follows the rim"),
+    ):
+        assert told in Reader(attempted(title, lambda make=make: make(found)).as_html()).text
 
 
 def test_progress_names_each_section(results):

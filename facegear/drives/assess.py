@@ -1,0 +1,490 @@
+"""A verdict to stake a gearbox on: a drive under every model that could change the answer.
+
+The report on a drive (:mod:`facegear.drives.verdict`) computes what its file says. What a file cannot know is varied
+here (:mod:`facegear.drives.variants`), each model in a basis in which its unstable speeds stand still, and values are
+taken anywhere in their tolerances (:mod:`facegear.drives.tolerances`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import attrgetter
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from facegear.design.changes import effects_of_changes
+from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share, with_basis
+from facegear.drives.contacts import in_torsion
+from facegear.drives.drive_file import DriveFile
+from facegear.drives.findings import best_change
+from facegear.drives.report import describe
+from facegear.drives.tolerances import WorstCase, united, worst_case
+from facegear.drives.variants import (
+    FORCES,
+    Variant,
+    other_teeth,
+    own_teeth,
+    plain_contacts,
+    with_own_teeth,
+)
+from facegear.drives.verdict import driven
+from facegear.floquet.models import Excited, replace_at
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.maps.parallel import each_in_processes, in_processes
+from facegear.maps.response_map import frequency_response
+from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.transverse import FaceGears
+from facegear.support.labelled import text, variable
+from facegear.support.parameters import number_of_workers, rpm
+
+Intervals = tuple[tuple[float, float], ...]
+
+SAFE, UNSTABLE, DEPENDS = "safe under all", "unstable under all", "depends"
+"""What an assessment may come to."""
+
+# What two models may differ in, as a sentence has it.
+_EFFECTS = {"contact": "the contact", "force": "the direction of the driving force", "teeth": "the teeth"}
+_ARMS = {"printed": "arm as printed", "conjugate": "arm of conjugate teeth"}
+# Bases tried for other teeth than the file's, the first of them one in which those stand still.
+_MORE_BASES = 3
+# Speeds of the forced response in torsion, and intervals of speed named one by one.
+_RESPONSE_SPEEDS, _NAMED = 91, 4
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a model of a drive comes to.
+
+    Attributes
+    ----------
+    variant : Variant
+        In the basis that was used.
+    tongues : tuple of Tongue
+    settled : bool
+        Whether they stood still from the basis before to that one.
+    """
+
+    variant: Variant
+    tongues: tuple[Tongue, ...]
+    settled: bool
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether it is stable at all speeds looked at."""
+        return not self.tongues
+
+    @property
+    def growth_rate(self) -> float:
+        """Largest growth rate [1/s], 0 where it is stable."""
+        return max((tongue.growth_rate for tongue in self.tongues), default=0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Assessment:
+    """What is known of the stability of a drive.
+
+    Attributes
+    ----------
+    file : DriveFile
+    outcomes : tuple of Outcome
+        The file's own contact and teeth first.
+    torsion : dict of str to tuple of Tongue
+        Tongues in torsion under each contact and each arm of the mesh force, the file's own first; empty where the file
+        has no gearbox.
+    worst : dict of str to WorstCase
+        Of the file's own contact and teeth, by the direction of the force; empty where the file has no tolerances.
+    response : xarray.Dataset or None
+        Steady response of the gearbox to the torque of one pinion's power
+        (:func:`facegear.maps.response_map.frequency_response`), if there is one.
+    change : str
+        The change that helps the file's own model most, made in earnest; empty if there is none.
+    left_out : tuple of str
+        What could not be computed, and why.
+    """
+
+    file: DriveFile
+    outcomes: tuple[Outcome, ...]
+    torsion: dict[str, tuple[Tongue, ...]]
+    worst: dict[str, WorstCase]
+    response: xr.Dataset | None
+    change: str
+    left_out: tuple[str, ...]
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Lowest and highest speed [rad/s]."""
+        return self.file.requirements.speeds
+
+    @property
+    def verdict(self) -> str:
+        """One of "safe under all", "unstable under all", "depends": models, and values in their tolerances."""
+        disk = [outcome.is_stable for outcome in self.outcomes]
+        torsion = [not found for found in self.torsion.values()] or [True]
+        if all(disk) and all(torsion) and all(case.is_stable for case in self.worst.values()):
+            return SAFE
+        # A drive is stable where the disk and the gearbox are.
+        return DEPENDS if any(disk) and any(torsion) else UNSTABLE
+
+    @property
+    def decides(self) -> tuple[str, ...]:
+        """What turns the verdict, in words: effects in which alone a stable and an unstable model differ."""
+        found = []
+        for effect, words in _EFFECTS.items():
+            rest = [name for name in _EFFECTS if name != effect]
+            seen: dict[tuple[str, ...], set[bool]] = {}
+            for outcome in self.outcomes:
+                key = tuple(getattr(outcome.variant, name) for name in rest)
+                seen.setdefault(key, set()).add(outcome.is_stable)
+            if any(len(kinds) == 2 for kinds in seen.values()):
+                found.append(words)
+        nominal = {o.variant.force: o.is_stable for o in reversed(self.outcomes) if self._is_own(o)}
+        if any(nominal.get(force) and not case.is_stable for force, case in self.worst.items()):
+            found.append("where in their tolerances stiffness, damping and speed lie")
+        if len({bool(tongues) for tongues in self.torsion.values()}) == 2:
+            found.append("contact or arm of the mesh force in torsion")
+        return tuple(found)
+
+    def _is_own(self, outcome: Outcome) -> bool:
+        first = self.outcomes[0].variant
+        return (outcome.variant.contact, outcome.variant.teeth) == (first.contact, first.teeth)
+
+    @cached_property
+    def always_unstable(self) -> Intervals:
+        """Intervals of speed [rad/s] in which all models of the disk's motion, or all of torsion, are unstable."""
+
+        def in_all(family: Sequence[Sequence[Tongue]]) -> Intervals:
+            stable = [gap for found in family for gap in gaps(_intervals(found), self.speeds)]
+            return gaps(united(stable), self.speeds) if family else ()
+
+        return united([*in_all([o.tongues for o in self.outcomes]), *in_all([*self.torsion.values()])])
+
+    @cached_property
+    def always_stable(self) -> Intervals:
+        """Intervals of speed [rad/s] in which every model, torsion and every value in its tolerances is stable."""
+        every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
+        every += [interval for case in self.worst.values() for interval in case.swept]
+        every += [interval for found in self.torsion.values() for interval in _intervals(found)]
+        return gaps(united(every), self.speeds)
+
+    @property
+    def headline(self) -> str:
+        """The verdict in a sentence or two, with what it was computed for."""
+        low, high = (f"{rpm(speed):.4g}" for speed in self.speeds)
+        count = len(self.outcomes)
+        stable = sum(outcome.is_stable for outcome in self.outcomes)
+        are = f"{stable} {'is' if stable == 1 else 'are'}"
+        where = f"from {low} to {high} rpm, of {count} models of the disk's motion"
+        if self.verdict == SAFE:
+            words = f"Safe under all: {where} none is unstable at any speed."
+        elif self.verdict == UNSTABLE and stable:
+            words = f"Unstable under all, in torsion; {where} {are} stable at all speeds."
+        elif self.verdict == UNSTABLE:
+            words = f"Unstable under all: {where} each is unstable at some speeds."
+        else:
+            words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
+        if self.torsion:
+            words += (
+                f" In torsion {sum(not found for found in self.torsion.values())} of {len(self.torsion)} are."
+            )
+        words += f" Stable under all of them: {told(self.always_stable)}."
+        words += f" Unstable under all of them: {told(self.always_unstable)}."
+        if self.verdict != SAFE:
+            words += f" Worst: {self.mechanism}."
+        open_cases = sum(not outcome.settled for outcome in self.outcomes)
+        if open_cases:
+            words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn them."
+        return words
+
+    @property
+    def mechanism(self) -> str:
+        """What grows fastest of all models, and how."""
+        unstable = [(o.variant.name, tongue) for o in self.outcomes for tongue in o.tongues]
+        unstable += [(f"torsion; {name}", t) for name, found in self.torsion.items() for t in found]
+        if not unstable:
+            return "nothing grows at the values of the file"
+        name, strongest = max(unstable, key=lambda pair: pair[1].growth_rate)
+        kind = "parametric resonance" if strongest.combination.order > 0 else "flutter of the mean system,"
+        speed = f"{rpm(strongest.peak):.4g} rpm"
+        return f"{kind} {strongest.label} at {speed}, growing by {strongest.growth_rate:.3g} 1/s ({name})"
+
+    @property
+    def over_tolerances(self) -> tuple[str, ...]:
+        """What the tolerances of the file make of its own contact and teeth, a sentence for each force."""
+        given = self.file.tolerances
+        ranges = ", ".join(
+            f"{name} ±{100 * part:g} %"
+            for name, part in (
+                ("stiffness", given.stiffness),
+                ("damping", given.damping),
+                ("speed", given.speed),
+            )
+            if part
+        )
+        found = []
+        for force, case in self.worst.items():
+            if case.is_stable:
+                words = "stable for all values"
+            elif case.swept:
+                words = (
+                    f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"
+                )
+            else:
+                speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
+                words = f"stable at all corners; tongues open between them at {speeds} rpm"
+            found.append(f"With {ranges}, {force}: {words}.")
+        return tuple(found)
+
+    @property
+    def static_force(self) -> float:
+        """Whole force between the teeth of a mesh at rest [N]."""
+        duty = self.file.requirements
+        return duty.power / duty.pinion_speed / self.file.drive.base_radius
+
+    @property
+    def dynamic_load(self) -> str:
+        """Largest force of a tooth pair over speed in torsion, against that at rest, in words; empty if not known."""
+        if self.response is None:
+            return ""
+        highest = self.response["force_highest"].max("load")
+        at = int(highest.fillna(-np.inf).argmax("speed"))
+        largest, speed = float(highest[at]), float(highest.speed[at])
+        parted = 100 * float((self.response["force_lowest"].min("load") < 0.0).mean())
+        return (
+            f"In torsion, where it is stable and flanks do not part, a tooth pair bears up to {largest:.4g} N, at "
+            f"{rpm(speed):.4g} rpm: {largest / self.static_force:.3g} times the whole static force of "
+            f"{self.static_force:.4g} N. At {parted:.3g} % of {highest.size} speeds flanks would part."
+        )
+
+    @property
+    def not_varied(self) -> str:
+        """What no model includes."""
+        return (
+            "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
+            "temperature; the driving force is the same at all speeds, and speeds outside the range are not looked at."
+        )
+
+    def table(self) -> xr.Dataset:
+        """All models and what they come to, as arrays.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``model``: ``unstable_share`` [-], ``largest_growth`` [1/s], ``tongues``, ``settled``; names of
+            contact, force and teeth as coordinates.
+        """
+        names = {
+            name: text("model", [getattr(o.variant, name) for o in self.outcomes], words)
+            for name, words in (("contact", "Contact"), ("force", "Driving force"), ("teeth", "Teeth"))
+        }
+        shares = [unstable_share(o.tongues, self.speeds) for o in self.outcomes]
+        growth = [o.growth_rate for o in self.outcomes]
+        count = [float(len(o.tongues)) for o in self.outcomes]
+        settled = [float(o.settled) for o in self.outcomes]
+        return xr.Dataset(
+            {
+                "unstable_share": variable("model", shares, "Unstable part of the speeds", "1", atol=1e-7),
+                "largest_growth": variable(
+                    "model", growth, "Largest growth rate", "1/s", rtol=1e-6, atol=1e-6
+                ),
+                "tongues": variable("model", count, "Number of tongues", "1", atol=0.1),
+                "settled": variable("model", settled, "1 where the basis suffices", "1", atol=0.1),
+            },
+            {"model": np.arange(len(self.outcomes)), **names},
+            {"parameters": describe(self.file)},
+        )
+
+
+def assess(
+    file: DriveFile,
+    *,
+    tolerance: float = 0.02,
+    most_steps: int = 5,
+    jobs: int = -1,
+    tell: Callable[[str], None] | None = None,
+) -> Assessment:
+    """Run a drive under every model that could change the answer.
+
+    Contacts (Tregold's time and that of the true sweep, or under all, half and a quarter of the load and without any)
+    and directions of the driving force make cases. In each follow, besides the teeth of the file, frozen and total
+    rate, rigid and flexible teeth, and the rules by which pairs share the load; every model in a basis that is raised
+    until its unstable speeds stand still. Then come torsion, tolerances, and the change that helps most.
+
+    Parameters
+    ----------
+    file : DriveFile
+    tolerance, most_steps
+        As for :func:`facegear.drives.basis.settled_tongues`.
+    jobs : int
+        Number of processes, as joblib's ``n_jobs``.
+    tell : callable, optional
+        Told in words how far it is; a first verdict, on the file's own model alone, within seconds.
+
+    Returns
+    -------
+    Assessment
+
+    Raises
+    ------
+    TypeError, ValueError, ArithmeticError
+        As :func:`facegear.drives.basis.settled_tongues`; models that the drive does not allow are left out and named.
+    """
+    number_of_workers("jobs", jobs)
+    say = tell or (lambda words: None)
+    speeds = file.requirements.speeds
+    contacts = plain_contacts(file)
+    cases = [
+        Variant(name, words, own_teeth(file), driven(file, force, with_own_teeth(file, contact)))
+        for name, contact in contacts.items()
+        for force, words in FORCES.items()
+    ]
+    first = tongues(cases[0].model, speeds, progress=False)
+    share = 100 * unstable_share(first, speeds)
+    say(f"first of {len(cases)} cases in its first basis: unstable at {share:.3g} % of the speeds")
+    outcomes: list[Outcome] = []
+    refused: list[str] = []
+    others: list[Variant] = []
+    work = [(case.model, speeds, tolerance, most_steps) for case in cases]
+    for case, found in zip(cases, each_in_processes(_settled, work, jobs), strict=True):
+        outcomes.append(Outcome(replace(case, model=found.model), found.tongues, found.settled))
+        # Where two bases agree for the file's teeth, the smaller is where the others begin.
+        start = found.steps[-2:][0]
+        own = replace(case, model=with_basis(case.model, start.nodal_circles, start.nodal_diameters))
+        variants, reasons = other_teeth(file, own, contacts[case.contact])
+        others += variants
+        refused += reasons
+        share = 100 * found.unstable_share
+        say(f"case {len(outcomes)} of {len(cases)}: unstable at {share:.3g} % of the speeds ({case.name})")
+    # The longest first, so that no processor waits for another at the end.
+    others.sort(key=lambda variant: -len(variant.model.coordinates))
+    trials = [(variant.model, speeds, tolerance, _MORE_BASES) for variant in others]
+    for number, (variant, tried) in enumerate(
+        zip(others, each_in_processes(_tried, trials, jobs), strict=True)
+    ):
+        if tried.found is None:
+            refused.append(f"{variant.name}: {tried.reason}")
+        else:
+            here = replace(variant, model=tried.found.model)
+            outcomes.append(Outcome(here, tried.found.tongues, tried.found.settled))
+        say(f"other teeth {number + 1} of {len(others)}: {variant.name}")
+    worst = _worst(file, outcomes[:2], jobs) if file.tolerances.given else {}
+    torsion = _torsion(file, contacts, jobs)
+    say("tolerances and torsion are done; the change that helps most is looked for")
+    return Assessment(
+        file=file,
+        outcomes=tuple(outcomes),
+        torsion=torsion,
+        worst=worst,
+        response=_response(file, jobs, refused),
+        change=_change(file, outcomes),
+        left_out=tuple(dict.fromkeys(refused)),
+    )
+
+
+class _Tried(NamedTuple):
+    """Tongues of a model, or why there are none to be told."""
+
+    found: SettledTongues | None
+    reason: str
+
+
+def _settled(
+    model: FaceGears, speeds: tuple[float, float], tolerance: float, most_steps: int
+) -> SettledTongues:
+    return settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps)
+
+
+def _tried(model: FaceGears, speeds: tuple[float, float], tolerance: float, most_steps: int) -> _Tried:
+    try:
+        return _Tried(_settled(model, speeds, tolerance, most_steps), "")
+    except (ArithmeticError, ValueError) as error:
+        return _Tried(None, str(error))
+
+
+def _torsion(file: DriveFile, contacts: Mapping[str, Contact], jobs: int) -> dict[str, tuple[Tongue, ...]]:
+    """Tongues in torsion under each contact and each arm of the mesh force, the file's own first."""
+    if file.torsional is None:
+        return {}
+    # Shafts with mass stand around a gearbox with massless ones.
+    inside = ("torsional",) if hasattr(file.torsional, "torsional") else ()
+    own = attrgetter(".".join((*inside, "arm")))(file.torsional)
+    models = {}
+    for arm in sorted(_ARMS, key=lambda arm: arm != own):
+        for name, contact in contacts.items():
+            moved = replace_at(file.torsional, (*inside, "contact"), in_torsion(contact, file.drive))
+            models[f"{name}, {_ARMS[arm]}"] = replace_at(moved, (*inside, "arm"), arm)
+    found = in_processes(tongues, [(model, file.requirements.speeds) for model in models.values()], jobs)
+    return dict(zip(models, found, strict=True))
+
+
+def _worst(file: DriveFile, own: Sequence[Outcome], jobs: int) -> dict[str, WorstCase]:
+    work = [(outcome.variant.model, file.requirements.speeds, file.tolerances) for outcome in own]
+    found = in_processes(worst_case, work, jobs)
+    return {outcome.variant.force: case for outcome, case in zip(own, found, strict=True)}
+
+
+def _response(file: DriveFile, jobs: int, refused: list[str]) -> xr.Dataset | None:
+    """Steady response in torsion to the torque of one pinion's power."""
+    if file.torsional is None:
+        refused.append("dynamic load of the teeth: the file has no section gearbox")
+        return None
+    torque = file.requirements.power / file.requirements.pinion_speed * file.drive.gear_ratio
+    at_load = np.zeros(len(file.torsional.coordinates))
+    at_load[2] = -torque
+    loaded = Excited(file.torsional, force=PiecewiseChebyshev.constant(at_load))
+    speeds = np.linspace(*file.requirements.speeds, _RESPONSE_SPEEDS)
+    try:
+        return frequency_response(loaded, speeds, jobs=jobs, progress=False)
+    except ArithmeticError as error:
+        refused.append(f"dynamic load of the teeth: {error}")
+        return None
+
+
+def _change(file: DriveFile, outcomes: Sequence[Outcome]) -> str:
+    """Say which change helps the first unstable model most."""
+    unstable = next((outcome for outcome in outcomes if outcome.tongues), None)
+    if unstable is None:
+        return ""
+    speeds = file.requirements.speeds
+    effects = effects_of_changes(unstable.variant.model, unstable.tongues, speeds, describe(file))
+    return " ".join(best_change(unstable.variant.name, effects, unstable.tongues))
+
+
+def _intervals(found: Sequence[Tongue]) -> Intervals:
+    return tuple((tongue.lower, tongue.upper) for tongue in found)
+
+
+def gaps(intervals: Sequence[tuple[float, float]], speeds: tuple[float, float]) -> Intervals:
+    """Return what a range has besides intervals that are apart and ascend.
+
+    Examples
+    --------
+    >>> gaps([(2.0, 3.0), (4.0, 5.0)], (1.0, 5.0))
+    ((1.0, 2.0), (3.0, 4.0))
+    """
+    low, high = speeds
+    edges = [low, *(edge for interval in intervals for edge in interval), high]
+    pairs = zip(edges[::2], edges[1::2], strict=True)
+    found = ((max(start, low), min(stop, high)) for start, stop in pairs)
+    return tuple((start, stop) for start, stop in found if stop > start)
+
+
+def told(intervals: Intervals) -> str:
+    """Intervals of speed [rad/s] in words, in rpm: the widest by their ends, how many there are besides."""
+    if not intervals:
+        return "no speed"
+    widest = sorted(sorted(intervals, key=lambda ends: ends[0] - ends[1])[:_NAMED])
+    named = ", ".join(f"{rpm(start):.4g} to {rpm(stop):.4g}" for start, stop in widest)
+    rest = len(intervals) - len(widest)
+    return f"{named} rpm" + (
+        f" and {rest} narrower {'interval' if rest == 1 else 'intervals'}" if rest else ""
+    )
+
+
+def _listed(words: Sequence[str]) -> str:
+    *others, last = words or ("the values taken",)
+    return f"{', '.join(others)} and {last}" if others else last

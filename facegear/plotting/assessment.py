@@ -1,0 +1,98 @@
+"""Figures of an assessment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from facegear.plotting.style import GREEN, INK, ORANGE, VERMILION, panels, styled
+from facegear.support.parameters import rpm
+
+_SPEED = "speed of the face gear [rpm]"
+_STABLE = 0.35
+Intervals = Sequence[tuple[float, float]]
+
+
+@styled
+def model_strips(
+    models: Mapping[str, Mapping[str, Intervals]],
+    stable: Intervals,
+    unstable: Intervals,
+    speeds_rpm: tuple[float, float],
+) -> Figure:
+    """Draw stable and unstable speeds of many models, in groups, and what all of them have in common below.
+
+    Parameters
+    ----------
+    models : mapping of str to mapping of str to intervals
+        Name of a group to names of its models and their unstable intervals [rpm].
+    stable, unstable : sequence of tuple of float
+        In which all models are stable, and in which they are unstable [rpm].
+    speeds_rpm : tuple of float
+        Lowest and highest operating speed [rpm].
+    """
+    rows = sum(len(group) for group in models.values())
+    figure, (ax,) = panels(1, 1, 0.24 * rows + 0.4 * len(models) + 1.6)
+    low, high = speeds_rpm
+    ticks, place = [], 0.0
+    for group, members in models.items():
+        ax.text(low, place - 0.45, group, fontsize=9, fontweight="bold", va="bottom")
+        for name, intervals in members.items():
+            place += 1.0
+            _strip(ax, place, intervals, speeds_rpm)
+            ticks.append((place, name))
+        place += 1.5
+    place += 0.5
+    ax.barh(place, high - low, 0.7, low, color=ORANGE, alpha=0.5)
+    for intervals, colour in ((stable, GREEN), (unstable, VERMILION)):
+        for start, stop in intervals:
+            ax.barh(place, stop - start, 0.7, start, color=colour)
+    ticks.append((place, "all together"))
+    ax.set_yticks(*zip(*ticks, strict=True), fontsize=8)
+    ax.set(xlim=speeds_rpm, ylim=(place + 0.8, -1.5), xlabel=_SPEED)
+    ax.grid(False)
+    handles = [
+        ax.barh(0.0, 0.0, color=colour, alpha=alpha, label=label)
+        for colour, alpha, label in (
+            (GREEN, 1.0, "stable"),
+            (VERMILION, 1.0, "unstable"),
+            (ORANGE, 0.5, "depends on the model"),
+        )
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
+
+
+def _strip(ax: Axes, place: float, intervals: Intervals, speeds_rpm: tuple[float, float]) -> None:
+    low, high = speeds_rpm
+    ax.barh(place, high - low, 0.6, low, color=GREEN, alpha=_STABLE)
+    for start, stop in intervals:
+        # The narrowest tongues would not show: each is at least a line wide.
+        ax.barh(place, max(stop - start, 2e-3 * (high - low)), 0.6, start, color=VERMILION)
+
+
+@styled
+def dynamic_load(response: xr.Dataset, static: float) -> Figure:
+    """Draw the largest and the smallest force of a tooth pair over speed; gaps where the gearbox is unstable.
+
+    Parameters
+    ----------
+    response : xarray.Dataset
+        From :func:`facegear.maps.response_map.frequency_response`.
+    static : float
+        Whole static force of the teeth [N].
+    """
+    figure, (ax,) = panels(height=3.6)
+    speed = rpm(response["speed"].values)
+    highest, lowest = response["force_highest"].max("load"), response["force_lowest"].min("load")
+    ax.plot(speed, np.asarray(highest) / 1e3, color=VERMILION, marker=".", label="largest of a pair")
+    ax.plot(speed, np.asarray(lowest) / 1e3, color=ORANGE, marker=".", label="smallest of a pair")
+    ax.axhline(static / 1e3, color=INK, linestyle="--", linewidth=1.0, label="all pairs together, at rest")
+    ax.set_yscale("symlog", linthresh=2.0 * static / 1e3)
+    ax.set(xlabel=_SPEED, ylabel="force between teeth [kN]")
+    figure.legend(loc="outside lower center", ncols=3)
+    return figure

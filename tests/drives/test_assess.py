@@ -1,0 +1,186 @@
+"""An assessment: what follows from what its models come to, and that these are what they are called."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from facegear.drives.assess import Assessment, Outcome, assess, gaps, told
+from facegear.drives.assessment_files import PAGE, sections, write_assessment
+from facegear.drives.drive_file import parse_drive, read_drive_file
+from facegear.drives.tolerances import Tolerances, WorstCase
+from facegear.drives.variants import FORCES, RIGID, RIGID_TOTAL, Variant
+from facegear.drives.verdict import cases
+from facegear.floquet.labels import Combination
+from facegear.floquet.response import steady_response
+from facegear.maps.tracing import Tongue, tongues
+from facegear.support.parameters import rad_per_s
+from tests.drives.test_page import HOSTILE, Reader
+
+DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
+CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
+FOLLOWER, DEAD = FORCES.values()
+NARROW = """
+tolerances:
+  stiffness_percent: 5
+"""
+
+
+def tongue(low, high, growth=2.0):
+    lower, upper = (float(rad_per_s(x)) for x in (low, high))
+    return Tongue(lower, upper, (lower + upper) / 2, growth, Combination(1, 8, "sum", 1))
+
+
+def outcome(contact, force, teeth, *unstable, settled=True):
+    return Outcome(Variant(contact, force, teeth, CASE_1.transverse), unstable, settled)
+
+
+def assessment(*outcomes, torsion=None, worst=None, file=CASE_1):
+    return Assessment(file, outcomes, torsion or {}, worst or {}, None, "", ())
+
+
+class TestVerdict:
+    def test_safe_under_all(self):
+        found = assessment(outcome("Tregold", DEAD, RIGID), outcome("Tregold", FOLLOWER, RIGID))
+        assert (found.verdict, found.decides) == ("safe under all", ())
+        assert found.headline == (
+            "Safe under all: from 100 to 1000 rpm, of 2 models of the disk's motion none is unstable at any speed. "
+            "Stable under all of them: 100 to 1000 rpm. Unstable under all of them: no speed."
+        )
+
+    def test_unstable_under_all_though_not_at_the_same_speeds(self):
+        found = assessment(
+            outcome("Tregold", DEAD, RIGID, tongue(200, 300)),
+            outcome("Tregold", DEAD, RIGID_TOTAL, tongue(250, 400)),
+        )
+        assert found.verdict == "unstable under all"
+        assert "Unstable under all of them: 250 to 300 rpm." in found.headline
+        assert told(found.always_stable) == "100 to 200, 400 to 1000 rpm"
+        assert (
+            "Worst: parametric resonance (1+8)/1 at 250 rpm, growing by 2 1/s (Tregold; force keeps"
+            in found.headline
+        )
+
+    def test_what_decides_is_what_alone_parts_stable_from_unstable(self):
+        stable = outcome("true sweep", DEAD, RIGID)
+        other = outcome("true sweep", FOLLOWER, RIGID, tongue(200, 300))
+        assert assessment(stable, other).decides == ("the direction of the driving force",)
+        # Two effects at once decide nothing of one of them.
+        both = outcome("Tregold", FOLLOWER, RIGID, tongue(200, 300))
+        assert assessment(stable, both).decides == ()
+        found = assessment(stable, other, outcome("Tregold", DEAD, RIGID, tongue(500, 501)))
+        assert found.decides == ("the contact", "the direction of the driving force")
+        assert found.headline.startswith(
+            "Depends on the contact and the direction of the driving force: from 100 to 1000 rpm, of 3 models of the "
+            "disk's motion 1 is stable at all speeds."
+        )
+
+    def test_torsion_alone_makes_a_drive_unstable(self):
+        torsion = {"Tregold, arm as printed": (tongue(600, 620, 90.0),)}
+        found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
+        assert found.verdict == "unstable under all"
+        assert told(found.always_unstable) == "600 to 620 rpm"
+        assert "(torsion; Tregold, arm as printed)" in found.headline
+        torsion["true sweep, arm as printed"] = ()
+        found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
+        assert (found.verdict, found.decides) == ("depends", ("contact or arm of the mesh force in torsion",))
+
+    def test_tolerances_turn_a_stable_drive(self):
+        swept = ((float(rad_per_s(200.0)), float(rad_per_s(290.0))),)
+        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, {}, swept, ())}
+        file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1, speed=0.02))
+        found = assessment(outcome("Tregold", DEAD, RIGID), worst=worst, file=file)
+        assert found.verdict == "depends"
+        assert found.decides == ("where in their tolerances stiffness, damping and speed lie",)
+        assert found.over_tolerances == (
+            "With stiffness ±10 %, speed ±2 %, force keeps its direction: unstable for some values at 200 to 290 rpm, "
+            "10 % of the speeds.",
+        )
+        assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+
+    def test_what_has_not_settled_says_so(self):
+        found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
+        assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn them.")
+
+
+def test_gaps_between_intervals():
+    assert gaps((), (1.0, 2.0)) == ((1.0, 2.0),)
+    assert gaps([(1.0, 2.0)], (1.0, 2.0)) == ()
+    assert gaps([(0.5, 1.5)], (1.0, 2.0)) == ((1.5, 2.0),)
+    assert told(tuple((float(i), i + 0.1 * i) for i in range(1, 7))).endswith("rpm and 2 narrower intervals")
+
+
+def test_the_page_shows_hostile_names_as_text(tmp_path):
+    file = replace(CASE_1, name=HOSTILE)
+    found = assessment(outcome("Tregold", DEAD, RIGID, tongue(200, 300)), file=file)
+    assert [section.title for section in sections(found)] == [
+        "Verdict",
+        "Models",
+        "Tolerances",
+        "Dynamic load",
+        "Left out",
+    ]
+    page = write_assessment(found, tmp_path / "out").read_text(encoding="utf-8")
+    read = Reader(page)
+    assert "script" not in read.elements
+    assert [dict(read.attributes).get(name) for name in ("onerror", "onclick")] == [None, None]
+    assert '<img src=x onerror="window.p=1">' in read.text
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [PAGE, "models.csv", "models.nc"]
+
+
+def test_largest_load_of_a_gearbox_is_that_of_its_steady_response():
+    file = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
+    speeds = np.array([float(rad_per_s(x)) for x in (700.0, 800.0)])
+    torque = file.requirements.power / file.requirements.pinion_speed * file.drive.gear_ratio
+    steady = [steady_response(file.torsional.under(torque, speed)) for speed in speeds]
+    forces = [each.contact_forces(np.linspace(0.0, 1.0, 2001)) for each in steady]
+    response = xr.Dataset(
+        {
+            "force_highest": (("speed", "load"), [force.max(axis=0) for force in forces]),
+            "force_lowest": (("speed", "load"), [force.min(axis=0) for force in forces]),
+        },
+        {"speed": speeds},
+    )
+    found = Assessment(file, (outcome("Tregold", DEAD, RIGID),), {}, {}, response, "", ())
+    at = int(np.argmax([force.max() for force in forces]))
+    assert f"{max(force.max() for force in forces):.4g} N, at {(700, 800)[at]} rpm" in found.dynamic_load
+    # The static force is that of the torque at the base circle.
+    assert found.static_force == pytest.approx(
+        torque / (file.drive.base_radius * file.drive.gear_ratio), rel=1e-12
+    )
+
+
+@pytest.mark.slow
+def test_models_are_those_of_the_report_and_of_single_searches(tmp_path):
+    text = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+    text = text.replace("lowest_speed_rpm: 100", "lowest_speed_rpm: 625").replace(
+        "highest_speed_rpm: 1000", "highest_speed_rpm: 660"
+    )
+    file = parse_drive(text + NARROW)
+    said = []
+    found = assess(file, most_steps=2, jobs=2, tell=said.append)
+    own = [o for o in found.outcomes if o.variant.teeth == RIGID]
+    for outcome_, case in zip(own, cases(file, most_steps=2, jobs=2), strict=True):
+        assert (outcome_.variant.contact, outcome_.variant.force) == (case.contact, FORCES[case.following])
+        assert [t.label for t in outcome_.tongues] == [t.label for t in case.found.tongues]
+        np.testing.assert_allclose(
+            [t.upper for t in outcome_.tongues], [t.upper for t in case.found.tongues], rtol=1e-8
+        )
+    assert len(found.outcomes) == 4 * 6
+    last = found.outcomes[-1]
+    alone = tongues(last.variant.model, file.requirements.speeds)
+    np.testing.assert_allclose([t.upper for t in last.tongues], [t.upper for t in alone], rtol=1e-8)
+    # The principal tongue of Fig. 7.12(a) lies in the range; the conjugate arm has none.
+    assert len(found.torsion) == 4
+    printed = found.torsion["Tregold, arm as printed"]
+    assert [t.label for t in printed] == ["(1+1)/1"]
+    assert printed[0].lower == pytest.approx(
+        tongues(file.torsional, file.requirements.speeds)[0].lower, rel=1e-9
+    )
+    assert set(found.worst) == {FOLLOWER, DEAD}
+    assert said[0].startswith("first of 4 cases in its first basis: unstable at ")
+    assert len(said) == 1 + 4 + 20 + 1
+    page = write_assessment(found, tmp_path).read_text(encoding="utf-8")
+    assert "Depends on" in page or "under all" in page
