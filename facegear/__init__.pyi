@@ -1,4 +1,5 @@
 from .design.body import critical_thickness as critical_thickness
+from .drives.assess import assess as assess
 from .drives.drive_file import read_drive_file as read_drive_file
 from .drives.drive_text import write_drive_file as write_drive_file
 from .floquet.hsu import resonance_bands as resonance_bands
@@ -71,6 +72,7 @@ __all__ = [
     "TwoGears",
     "UnloadedContact",
     "WithoutRigidMotion",
+    "assess",
     "critical_thickness",
     "error_estimate",
     "frequency_response",

@@ -307,7 +307,7 @@ def assess(
     jobs: int = -1,
     tell: Callable[[str], None] | None = None,
 ) -> Assessment:
-    """Run a drive under every model that could change the answer.
+    r"""Run a drive under every model that could change the answer.
 
     Contacts (Tregold's time and that of the true sweep, or under all, half and a quarter of the load and without any)
     and directions of the driving force make cases. In each follow, besides the teeth of the file, frozen and total
@@ -332,6 +332,19 @@ def assess(
     ------
     TypeError, ValueError, ArithmeticError
         As :func:`facegear.drives.basis.settled_tongues`; models that the drive does not allow are left out and named.
+
+    Examples
+    --------
+    At one speed of Case I in the smallest basis there is, to be quick; no basis is said to suffice then.
+
+    >>> from facegear.drives.drive_file import parse_drive
+    >>> from facegear.drives.examples import example_text
+    >>> text = example_text("case_1").replace("_speed_rpm: 1000", "_speed_rpm: 541")
+    >>> text = text.replace("_speed_rpm: 100", "_speed_rpm: 540")
+    >>> small = "body:\n  nodal_circles: 0\n  nodal_diameters: 1\n"
+    >>> found = assess(parse_drive(text.replace("body:\n", small)), most_steps=1, jobs=1)
+    >>> found.verdict, found.decides
+    ('depends', ('the contact', 'the direction of the driving force', 'the teeth'))
     """
     number_of_workers("jobs", jobs)
     say = tell or (lambda words: None)
@@ -361,7 +374,8 @@ def assess(
         say(f"case {len(outcomes)} of {len(cases)}: unstable at {share:.3g} % of the speeds ({case.name})")
     # The longest first, so that no processor waits for another at the end.
     others.sort(key=lambda variant: -len(variant.model.coordinates))
-    trials = [(variant.model, speeds, tolerance, _MORE_BASES) for variant in others]
+    bases = min(_MORE_BASES, most_steps)
+    trials = [(variant.model, speeds, tolerance, bases) for variant in others]
     for number, (variant, tried) in enumerate(
         zip(others, each_in_processes(_tried, trials, jobs), strict=True)
     ):

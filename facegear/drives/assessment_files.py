@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from facegear.drives.assess import Assessment
+from facegear.drives.assess import Assessment, Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
 from facegear.plotting import assessment as draw
 from facegear.support import labelled
@@ -50,12 +50,16 @@ def _in_rpm(intervals: Sequence[tuple[float, float]]) -> list[tuple[float, float
     return [(float(rpm(start)), float(rpm(stop))) for start, stop in intervals]
 
 
+def _group_of(outcome: Outcome) -> str:
+    """Contact and direction of the force of a model, in words."""
+    return f"{outcome.variant.contact}, {outcome.variant.force}"
+
+
 def _models(found: Assessment) -> Section:
     groups: dict[str, dict[str, list[tuple[float, float]]]] = {}
     for outcome in found.outcomes:
-        variant = outcome.variant
-        group = groups.setdefault(f"{variant.contact}, {variant.force}", {})
-        group[variant.teeth] = _in_rpm([(tongue.lower, tongue.upper) for tongue in outcome.tongues])
+        group = groups.setdefault(_group_of(outcome), {})
+        group[outcome.variant.teeth] = _in_rpm([(tongue.lower, tongue.upper) for tongue in outcome.tongues])
     if found.torsion:
         groups["torsion"] = {
             name: _in_rpm([(tongue.lower, tongue.upper) for tongue in part])
@@ -74,7 +78,7 @@ def _models(found: Assessment) -> Section:
         "depending on the model.",
         "Horizontal strips over speed, one for each model, green with red intervals; a last one in three colours",
     )
-    table = found.table()
+    places, table = {group: place for place, group in enumerate(groups)}, found.table()
     rows = tuple(
         (
             *(str(table[name].values[i]) for name in ("contact", "force", "teeth")),
@@ -82,7 +86,7 @@ def _models(found: Assessment) -> Section:
             f"{float(table['largest_growth'][i]):.3g}",
             "yes" if table["settled"].values[i] else "NO",
         )
-        for i in range(table.sizes["model"])
+        for i in sorted(range(len(found.outcomes)), key=lambda i: places[_group_of(found.outcomes[i])])
     )
     headings = (
         "contact",

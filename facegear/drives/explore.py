@@ -19,7 +19,7 @@ from facegear.drives.drive_file import parse_drive
 from facegear.drives.drive_text import drive_text
 from facegear.floquet.models import Model, replace_parameter
 from facegear.maps.stability_map import stability_map
-from facegear.support.parameters import finite, integer_at_least, keep, positive
+from facegear.support.parameters import finite, integer_at_least, keep, one_of, positive
 from facegear.support.types import FloatArray
 
 Settings = Mapping[str, Any]
@@ -218,6 +218,9 @@ class Study:
         return text
 
     def _in_si(self, settings: Settings) -> dict[str, Any]:
+        for control in self.controls:
+            if isinstance(control, Choice):
+                one_of(control.name, settings[control.name], control.options)
         return {
             control.name: (
                 control.si(settings[control.name])

@@ -11,7 +11,9 @@ from facegear.drives.explore import Choice, Quantity, Settings, Study
 from facegear.drives.flexible_teeth import CENTROID, FlexibleTeeth
 from facegear.drives.forces import RIM, pressed
 from facegear.floquet.models import Model, replace_parameter, value_of
+from facegear.floquet.periodic import named
 from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import ContactPath
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.classical import Mathieu, Meissner
 from facegear.mechanics.contact import Contact
@@ -20,7 +22,7 @@ from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.sharing import RULES
-from facegear.mechanics.torsional import Torsional, mesh_stiffness
+from facegear.mechanics.torsional import Gearbox, Torsional, mesh_stiffness
 from facegear.mechanics.transverse import Transverse
 from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import WATT_PER_HORSEPOWER, MeshLoad, rad_per_s
@@ -64,10 +66,39 @@ def _pinion_mass(load: MeshLoad, least: float) -> Quantity:
     return Quantity("mass", "pinion mass τ", least, 2.0, load.mass, 0.05, parameter="load.mass")
 
 
-def _contact(settings: Settings, drive: Drive) -> Contact:
-    """Contact on the clock that the reader picks."""
+def _require_kind(name: str, value: object, *kinds: type) -> None:
+    """Refuse what a study cannot show."""
+    if not isinstance(value, kinds):
+        wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
+        raise TypeError(f"{name} must be {wanted} for this study, got {named(value)}")
+
+
+def _require_lines(contact: Contact, drive: Drive) -> None:
+    """Refuse contacts that the choice of a contact ratio would replace."""
+    if contact.path != ContactPath or contact.sharing == "each" or not drive.has_line_contact:
+        raise ValueError(
+            "contact of the model must be that of lines as one load, whose contact ratio a reader chooses, got "
+            f"{contact!r}"
+        )
+
+
+def _clock(contact: Contact, drive: Drive) -> str:
+    """Which of the contact ratios that a reader chooses a contact has."""
+    clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
+    own = drive.contact_ratio if contact.contact_ratio is None else contact.contact_ratio
+    ratio = next((name for name, value in clocks.items() if value == own), None)
+    if ratio is None:
+        raise ValueError(
+            f"contact_ratio of the model must be {clocks[TREGOLD]:.6g} (Tregold) or {clocks[TRUE_SWEEP]:.6g} (true "
+            f"sweep) for these teeth, got {own!r}"
+        )
+    return ratio
+
+
+def _contact(start: Contact, settings: Settings, drive: Drive) -> Contact:
+    """Contact of a model on the clock that the reader picks."""
     swept = settings["contact_ratio"] == TRUE_SWEEP
-    return Contact(contact_ratio=drive.geometric_contact_ratio if swept else None)
+    return replace(start, contact_ratio=drive.geometric_contact_ratio if swept else None)
 
 
 def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000.0) -> Study:
@@ -91,16 +122,41 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
         force presses elsewhere than can be chosen.
     """
     start = cases.FIGURES["4.4a"].model() if model is None else model
+    _require_kind("model", start, Transverse)
+    speed = _speed(highest_speed_rpm)
     body, drive, load = start.body, start.body.drive, start.load
-    degrees = [math.degrees(angle) % 360.0 for angle in start.pinion_angles]
+    _require_lines(start.contact, drive)
+    first = start.pinion_angles[0]
+    degrees = [math.degrees(angle - first) % 360.0 for angle in start.pinion_angles]
     degrees += [_SECOND, _THIRD][len(degrees) - 1 :]
-    clocks = {TREGOLD: drive.contact_ratio, TRUE_SWEEP: drive.geometric_contact_ratio}
-    ratio = next((name for name, value in clocks.items() if value == start.contact_ratio), None)
-    if ratio is None:
-        raise ValueError(
-            f"contact_ratio of the model must be {clocks[TREGOLD]:.6g} (Tregold) or {clocks[TRUE_SWEEP]:.6g} (true "
-            f"sweep) for these teeth, got {start.contact_ratio!r}"
+    ratio = _clock(start.contact, drive)
+
+    def angles(settings: Settings) -> tuple[float, ...]:
+        ahead = (0.0, settings["second_angle"], settings["third_angle"])
+        return tuple(first + angle for angle in ahead[: int(settings["pinions"])])
+
+    def build(settings: Settings) -> Model:
+        gears = replace(drive, **{name: settings[name] for name in ("pinion_teeth", "gear_teeth", "module")})
+        contact, there = _contact(start.contact, settings, gears), angles(settings)
+        return replace(
+            start,
+            body=replace(
+                body,
+                drive=gears,
+                thickness_ratio=settings["thickness_ratio"],
+                bore_radius=settings["bore_radius"],
+            ),
+            load=MeshLoad(settings["stiffness"], settings["damping"], settings["mass"]),
+            pinion_angles=there,
+            contact=contact,
+            force=_force(start.force, settings, gears, contact),
+            # Phases of one's own are those of so many pinions.
+            phases=start.phases if len(there) == len(start.pinion_angles) else None,
         )
+
+    def content(settings: Settings) -> dict[str, Any]:
+        return _drive_content(start, settings, [math.degrees(angle) for angle in angles(settings)])
+
     controls = (
         Quantity("pinion_teeth", "teeth of the pinion", 12, 60, drive.pinion_teeth, 1, whole=True),
         Quantity("gear_teeth", "teeth of the face gear", 40, 260, drive.gear_teeth, 1, whole=True),
@@ -143,42 +199,39 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
         Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), ratio),
         *_force_controls(start.force, start.contact, drive, highest_speed_rpm),
     )
-    return Study(controls, _drive_model, "stiffness", _speed(highest_speed_rpm), content=_drive_content)
+    return Study(controls, build, "stiffness", speed, content=content)
 
 
-def _drive_model(settings: Settings) -> Model:
-    drive = Drive(settings["pinion_teeth"], settings["gear_teeth"], settings["module"])
-    body = Body(drive, settings["thickness_ratio"], bore_radius=settings["bore_radius"])
-    angles = (0.0, settings["second_angle"], settings["third_angle"])[: int(settings["pinions"])]
-    return Transverse(
-        body,
-        MeshLoad(settings["stiffness"], settings["damping"], settings["mass"]),
-        pinion_angles=angles,
-        contact=_contact(settings, drive),
-        force=_force(settings, drive),
-    )
-
-
-def _drive_content(settings: Settings) -> dict[str, Any]:
+def _drive_content(start: Transverse, settings: Settings, angles_deg: list[float]) -> dict[str, Any]:
     """Say in the words of a drive file what settings mean; its power is that at the highest speed."""
-    highest = settings["highest_speed"] / _RPM
-    angles = (0.0, settings["second_angle"], settings["third_angle"])[: int(settings["pinions"])]
+    highest, drive, material = settings["highest_speed"] / _RPM, start.body.drive, start.body.material
     content = {
         "name": "From the explorer",
         "gears": {
             "pinion_teeth": settings["pinion_teeth"],
             "gear_teeth": settings["gear_teeth"],
             "module_mm": settings["module"] * 1e3,
+            "pressure_angle_deg": math.degrees(drive.pressure_angle),
+            "shaft_angle_deg": math.degrees(drive.shaft_angle),
         },
         "body": {
             "thickness_ratio": settings["thickness_ratio"],
             "bore_radius_mm": settings["bore_radius"] * 1e3,
+            "nodal_circles": start.body.nodal_circles,
+            "nodal_diameters": start.body.nodal_diameters,
+        },
+        "material": {
+            "density_kg_per_m3": material.density,
+            "youngs_modulus_GPa": material.youngs_modulus * 1e-9,
+            "poissons_ratio": material.poissons_ratio,
+            "viscous_loss_factor_us": material.viscous_loss_factor * 1e6,
+            "yield_strength_MPa": material.yield_strength * 1e-6,
         },
         "pinions": {
             "stiffness": settings["stiffness"],
             "damping_us": settings["damping"] * 1e6,
             "mass": settings["mass"],
-            "angles_deg": [math.degrees(angle) for angle in angles],
+            "angles_deg": angles_deg,
             "contact_ratio": "geometric" if settings["contact_ratio"] == TRUE_SWEEP else "tregold",
         },
         "operation": {
@@ -235,13 +288,15 @@ def _force_controls(
     )
 
 
-def _force(settings: Settings, drive: Drive) -> DrivingForce:
+def _force(start: DrivingForce | None, settings: Settings, drive: Drive, contact: Contact) -> DrivingForce:
     """Driving force of the power at top speed, as the reader wants it."""
-    return DrivingForce(
-        settings["power"],
-        settings["highest_speed"] / drive.speed_ratio,
+    base = DrivingForce(0.0, 1.0) if start is None else start
+    return replace(
+        base,
+        power=settings["power"],
+        pinion_speed=settings["highest_speed"] / drive.speed_ratio,
         following=next(key for key, words in _DIRECTIONS.items() if words == settings["following"]),
-        spread=pressed(PRESSED[settings["force_at"]], _contact(settings, drive), drive),
+        spread=pressed(PRESSED[settings["force_at"]], contact, drive),
     )
 
 
@@ -290,7 +345,8 @@ def gearbox_study(
     Study
     """
     start = gearboxes.FIGURES["7.12a"].model() if model is None else model
-
+    _require_kind("model", start, Torsional)
+    _require_kind("gearbox of the model", start.gearbox, gearboxes.ProportionalGearbox)
     controls = (
         _quantity(start, "gear_inertia", "gear inertia J₂/J₁", 1.0, 100.0, 1.0),
         _quantity(start, "load_inertia", "load inertia Jₒ/J₁", 1.0, 100.0, 1.0),
@@ -329,10 +385,12 @@ def shafts_study(model: HeavyShafts | None = None, highest_speed_rpm: float = 10
     Study
     """
     start = HeavyShafts(gearboxes.FIGURES["7.12a"].model(), 0.3, 0.3, modes=1) if model is None else model
+    _require_kind("model", start, HeavyShafts)
+    _require_kind("gearbox of the model", start.gearbox, gearboxes.ProportionalGearbox)
     controls = (
         _quantity(start, "input_length", "length of the input shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
         _quantity(start, "output_length", "length of the output shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
-        Quantity("modes", "modes of each shaft", 0, 6, start.modes, 1, whole=True),
+        Quantity("modes", "modes of each shaft", 0, 3, start.modes, 1, whole=True),
         _quantity(start, "input_stiffness", "input shaft k₁/k_m [m²/rad]", 0.005, 0.5, 0.001),
         _quantity(start, "output_stiffness", "output shaft k₂/k_m [m²/rad]", 0.005, 0.5, 0.001),
         _quantity(start, "mesh_damping", "mesh damping c_m/k_m [µs]", 0.0, 50.0, 0.5, 1e-6),
@@ -362,6 +420,8 @@ def damage_study(model: Torsional | None = None, highest_speed_rpm: float = 1000
         Its damping coefficients stay what they are.
     """
     start = Torsional(gearboxes.FIGURES["7.12b"].gearbox.in_si) if model is None else model
+    _require_kind("model", start, Torsional)
+    _require_kind("gearbox of the model", start.gearbox, Gearbox)
     parts = {"input_stiffness": "input shaft", "output_stiffness": "output shaft", "mesh_stiffness": "teeth"}
     controls = tuple(
         Quantity(
@@ -427,7 +487,15 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
         rigid = cases.FIGURES["4.4a"].model()
         stiffness = mesh_stiffness(rigid.body.drive, correction_factor=0.5)
         model = MeshOscillator(rigid.body, rigid.load, mesh_stiffness=stiffness, mesh_damping=1e-5)
-    start, body, load = model, model.body, model.load
+    _require_kind("model", model, MeshOscillator)
+    start, body, load, speed = model, model.body, model.load, _speed(highest_speed_rpm)
+    if len(start.pinion_angles) > 1 or start.sides is not None or start.phases is not None:
+        raise ValueError(
+            "model must have one pinion on the front, without a phase, where a reader adds others, got pinion_angles = "
+            f"{start.pinion_angles!r}, sides = {start.sides!r}, phases = {start.phases!r}"
+        )
+    first = start.pinion_angles[0]
+    rule, ratio = _sharing(start)
     controls = (
         Choice("pinions", "pinions", (ALONE, FRONT, BOTH, BETWEEN), ALONE),
         Quantity(
@@ -450,8 +518,8 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
             parameter="clocking",
             when=("pinions", BOTH),
         ),
-        Choice("sharing", "load sharing", (CENTROID, *RULES), CENTROID),
-        Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), TREGOLD),
+        Choice("sharing", "load sharing", (CENTROID, *RULES), rule),
+        Choice("contact_ratio", "contact ratio", (TREGOLD, TRUE_SWEEP), ratio),
         Quantity(
             "mesh_stiffness",
             "stiffness of a tooth pair [N/µm]",
@@ -487,13 +555,36 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
             (1, -1) if pinions == BOTH else (),
             settings["clocking"] if pinions == BOTH else 0.0,
         )
+        plain = _contact(Contact(travel=start.contact.travel), settings, drive)
         gear = teeth.under(
             replace(body, thickness_ratio=settings["thickness_ratio"]),
             replace(load, stiffness=settings["stiffness"], mass=settings["mass"]),
-            (0.0, settings["second_angle"]) if pinions in (FRONT, BOTH) else (0.0,),
-            teeth.contact(_contact(settings, drive), drive),
+            (first, first + settings["second_angle"]) if pinions in (FRONT, BOTH) else (first,),
+            teeth.contact(plain, drive),
         )
-        gear = replace(gear, force=_force(settings, drive))
+        gear = replace(gear, force=_force(start.force, settings, drive, plain))
         return TwoGears(gear) if pinions == BETWEEN else gear
 
-    return Study(controls, build, "mesh_stiffness", _speed(highest_speed_rpm))
+    return Study(controls, build, "mesh_stiffness", speed)
+
+
+def _sharing(start: MeshOscillator) -> tuple[str, str]:
+    """Rule of sharing and contact ratio of a model, by the words of their choices.
+
+    Raises
+    ------
+    ValueError
+        If its contact is none of those that a reader can choose.
+    """
+    drive, own = start.body.drive, start.contact
+    for ratio in (TREGOLD, TRUE_SWEEP):
+        plain = _contact(Contact(travel=own.travel), {"contact_ratio": ratio}, drive)
+        for rule in (CENTROID, *RULES):
+            teeth = FlexibleTeeth(start.mesh_stiffness, start.mesh_damping, rule, (), 0.0)
+            if teeth.contact(plain, drive) == own:
+                return rule, ratio
+    rules = ", ".join((CENTROID, *RULES))
+    raise ValueError(
+        f"contact of the model must be along lines, shared by {rules}, with Tregold's contact ratio or that of the "
+        f"true sweep, got {own!r}"
+    )

@@ -40,12 +40,12 @@ def model_strips(
     low, high = speeds_rpm
     ticks, place = [], 0.0
     for group, members in models.items():
-        ax.text(low, place - 0.45, group, fontsize=9, fontweight="bold", va="bottom")
+        ax.text(low, place + 0.35, group, fontsize=9, fontweight="bold", va="bottom")
         for name, intervals in members.items():
             place += 1.0
             _strip(ax, place, intervals, speeds_rpm)
             ticks.append((place, name))
-        place += 1.5
+        place += 1.2
     place += 0.5
     ax.barh(place, high - low, 0.7, low, color=ORANGE, alpha=0.5)
     for intervals, colour in ((stable, GREEN), (unstable, VERMILION)):
@@ -53,7 +53,7 @@ def model_strips(
             ax.barh(place, stop - start, 0.7, start, color=colour)
     ticks.append((place, "all together"))
     ax.set_yticks(*zip(*ticks, strict=True), fontsize=8)
-    ax.set(xlim=speeds_rpm, ylim=(place + 0.8, -1.5), xlabel=_SPEED)
+    ax.set(xlim=speeds_rpm, ylim=(place + 0.8, -0.7), xlabel=_SPEED)
     ax.grid(False)
     handles = [
         ax.barh(0.0, 0.0, color=colour, alpha=alpha, label=label)

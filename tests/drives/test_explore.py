@@ -1,5 +1,6 @@
 """What the explorer computes, against closed forms and the maps it takes a shorter way to."""
 
+import math
 import re
 from dataclasses import replace
 
@@ -22,16 +23,21 @@ from facegear.drives.explore import (
 )
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
+from facegear.geometry.drive import Drive
 from facegear.maps.stability_map import stability_map
-from facegear.mechanics import cases
+from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.classical import Meissner, meissner_trace
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import shape_vector
 from facegear.mechanics.edge_stiffness import DrivingForce
+from facegear.mechanics.heavy_shafts import HeavyShafts
+from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
+from facegear.mechanics.sharing import shared_load
 from facegear.mechanics.spread_force import FaceStrip, PitchPoint
+from facegear.mechanics.torsional import Torsional, mesh_stiffness
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import Material, MeshLoad, rad_per_s
 
 SQUARE = Meissner(depth=0.6, duty=0.4)
 FREQUENCIES = np.linspace(0.4, 2.6, 23)
@@ -170,6 +176,106 @@ def test_controls_of_a_drive_stand_at_first_where_its_model_does(start):
     for a, b in zip(one.loads, other.loads, strict=True):
         assert (a.stiffness, a.damping, a.mass) == pytest.approx((b.stiffness, b.damping, b.mass), rel=1e-9)
         assert a.shape(0.3) == pytest.approx(b.shape(0.3), rel=1e-9)
+
+
+OWN_DRIVE = Drive(30, 120, 3e-3, pressure_angle=math.radians(20.0), shaft_angle=math.radians(85.0))
+ALUMINIUM = Material(2810.0, 71e9, 0.33, 2e-6, 4e8)
+OWN_BODY = Body(OWN_DRIVE, 0.04, nodal_diameters=5, material=ALUMINIUM)
+OWN = Transverse(
+    OWN_BODY,
+    MeshLoad(0.5, 4e-6, 0.0),
+    (0.5, 1.5),
+    Contact(rate="total", travel="with_disk"),
+    DrivingForce(2e5, 400.0, harmonics=6),
+    phases=(0.0, 0.3),
+)
+ROUND = Drive(30, 120, 3e-3)
+ON_SPRINGS = MeshOscillator(
+    Body(ROUND, 0.04), MeshLoad(0.5, 4e-6, 0.5), mesh_stiffness=mesh_stiffness(ROUND, 0.5), mesh_damping=2e-5
+)
+BY_RULE = Contact(
+    path=shared_load("equal"), sharing="each", rate="total", contact_ratio=ROUND.geometric_contact_ratio
+)
+
+
+@pytest.mark.parametrize(
+    ("study", "model"),
+    [
+        (studies.drive_study, OWN),
+        (studies.teeth_study, ON_SPRINGS),
+        (studies.teeth_study, replace(ON_SPRINGS, contact=BY_RULE, pinion_angles=(0.4,))),
+        (studies.teeth_study, replace(ON_SPRINGS, force=DrivingForce(2e5, 400.0, "dead", 6))),
+    ],
+)
+def test_what_has_no_control_stays_as_the_model_has_it(study, model):
+    """Pressure angle, material, basis, rate, phases and the like were dropped without a word."""
+    made = study(model)
+    built = made.model(made.settings())
+    assert growth_rate(built.system(60.0)) == pytest.approx(growth_rate(model.system(60.0)), abs=1e-7)
+    assert built.system(60.0).size == model.system(60.0).size
+
+
+@pytest.mark.parametrize(
+    ("study", "model", "error", "message"),
+    [
+        (studies.drive_study, ON_SPRINGS, TypeError, "model must be a Transverse for this study, got"),
+        (studies.teeth_study, OWN, TypeError, "model must be a MeshOscillator for this study, got"),
+        (studies.teeth_study, "x", TypeError, "model must be a MeshOscillator for this study, got"),
+        (
+            studies.drive_study,
+            replace(OWN, contact=Contact(sharing="mean", contact_ratio=1.7)),
+            ValueError,
+            r"contact_ratio of the model must be .*, got 1.7",
+        ),
+        (
+            studies.teeth_study,
+            replace(ON_SPRINGS, contact=Contact(rate="total", contact_ratio=2.2)),
+            ValueError,
+            "contact of the model must be along lines, shared by",
+        ),
+        (
+            studies.teeth_study,
+            replace(ON_SPRINGS, pinion_angles=(0.0, 2.0)),
+            ValueError,
+            "model must have one pinion",
+        ),
+        (
+            studies.teeth_study,
+            replace(ON_SPRINGS, sides=(-1,)),
+            ValueError,
+            "model must have one pinion on the front",
+        ),
+        (
+            studies.shafts_study,
+            HeavyShafts(Torsional(gearboxes.FIGURES["7.12a"].gearbox.in_si), 0.2, 0.4),
+            TypeError,
+            "gearbox of the model must be a ProportionalGearbox",
+        ),
+        (studies.shafts_study, gearboxes.FIGURES["7.12a"].model(), TypeError, "model must be a HeavyShafts"),
+        (
+            studies.damage_study,
+            gearboxes.FIGURES["7.12a"].model(),
+            TypeError,
+            "gearbox of the model must be a Gearbox",
+        ),
+    ],
+)
+def test_a_model_that_controls_would_change_is_refused(study, model, error, message):
+    with pytest.raises(error, match=message):
+        study(model)
+
+
+@pytest.mark.parametrize("study", [studies.drive_study, studies.teeth_study, studies.shafts_study])
+@pytest.mark.parametrize("highest", [0, -1.0, "x"])
+def test_a_highest_speed_that_is_none_is_named(study, highest):
+    with pytest.raises((TypeError, ValueError), match="highest_speed"):
+        study(None, highest)
+
+
+def test_an_option_that_there_is_not_is_refused():
+    study = studies.teeth_study()
+    with pytest.raises(ValueError, match=r"pinions must be .*got 'x'"):
+        study.model(study.settings({"pinions": "x"}))
 
 
 def test_a_force_on_places_that_cannot_be_chosen_is_refused():
