@@ -49,7 +49,10 @@ PREPARE = """() => {
   const drop = selector => document.querySelectorAll(selector).forEach(element => element.remove());
   drop(".bd-header, .bd-header-article, .bd-sidebar-primary, .bd-sidebar-secondary, .sbt-scroll-pixel-helper");
   drop(".prev-next-footer, .bd-footer, .bd-footer-content, .bd-footer-article, .skip-link, #pst-back-to-top, dialog");
-  drop(".headerlink, .jupyter-widgets, .turning-view, .cell_input, .tag_hide-input > details, .only-dark, .copybtn");
+  drop(".headerlink, .jupyter-widgets, .turning-view, .only-dark, .copybtn");
+  // Code that lies open is printed, folded code is not, and of a folded answer what it shows.
+  drop(".tag_hide-input .cell_input, .tag_hide-input > details, .tag_hide-cell .cell_input, .tag_hide-cell summary");
+  for (const answer of document.querySelectorAll(".tag_hide-cell > details")) answer.replaceWith(...answer.childNodes);
   drop(".search-button__wrapper, .pst-async-banner-revealer, #pst-primary-sidebar-modal, .sidebar-toggle");
   drop("#jb-print-docs-body, .article-header-buttons");
   // Every page counts its own citations from id1; the bibliography's entries are what links lead to.

@@ -14,6 +14,17 @@
     });
   }
 
+  // What scrolls sideways can be reached and moved with the keyboard.
+  function reachFigures() {
+    for (const figure of document.querySelectorAll(".bd-article figure:has(> img)")) {
+      if (figure.scrollWidth > figure.clientWidth + 1) figure.setAttribute("tabindex", "0");
+      else figure.removeAttribute("tabindex");
+    }
+  }
+
+  window.addEventListener("load", reachFigures);
+  window.addEventListener("resize", reachFigures);
+
   document.addEventListener("DOMContentLoaded", function () {
     // The entries are no list items, so that their frame is no list.
     document.querySelectorAll(".citation-list[role=list]").forEach((list) => list.removeAttribute("role"));

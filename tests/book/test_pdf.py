@@ -3,7 +3,7 @@
 import re
 import shutil
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import nbformat
@@ -28,9 +28,22 @@ def reader() -> PdfReader:
 
 
 @pytest.fixture(scope="module")
-def texts(reader: PdfReader) -> list[str]:
-    """Return the text of each page, which takes a while to find between the lines of the figures."""
-    return [page.extract_text() for page in reader.pages]
+def extracted(reader: PdfReader) -> tuple[list[str], str]:
+    """Return the text of each page, which takes a while to find between the lines of figures, and what is no code."""
+    prose: list[str] = []
+
+    def note(
+        part: str, _matrix: object, _place: object, font: Mapping[str, str] | None, _size: float
+    ) -> None:
+        if "Mono" not in (font or {}).get("/BaseFont", ""):
+            prose.append(part)
+
+    return [page.extract_text(visitor_text=note) for page in reader.pages], " ".join(prose)
+
+
+@pytest.fixture(scope="module")
+def texts(extracted: tuple[list[str], str]) -> list[str]:
+    return extracted[0]
 
 
 @pytest.fixture(scope="module")
@@ -75,9 +88,17 @@ def test_every_page_of_the_book_is_in_it(reader: PdfReader, text: str) -> None:
     assert places == sorted(places)
 
 
-def test_equations_are_set(text: str) -> None:
-    assert not re.search(r"\$\$|\\\(|\\\[|\\begin\{|\\frac|\\Omega", text)
-    assert text.count("$") == 0
+def test_equations_are_set(extracted: tuple[list[str], str]) -> None:
+    _, prose = extracted
+    assert "Floquet transition matrix" in prose
+    assert not re.search(r"\$\$|\\\(|\\\[|\\begin\{|\\frac|\\Omega", prose)
+    assert prose.count("$") == 0
+
+
+def test_code_that_lies_open_is_printed_and_bookkeeping_is_not(text: str) -> None:
+    assert "import facegear as fg" in text
+    assert "fg.stability_map(" in text
+    assert "chapter.finish()" not in text
 
 
 def test_pages_are_a4_and_none_is_empty(reader: PdfReader, texts: list[str]) -> None:
