@@ -24,14 +24,13 @@ from facegear.drives.findings import best_change
 from facegear.drives.report import describe
 from facegear.drives.tolerances import WorstCase, united, worst_case
 from facegear.drives.variants import (
-    FORCES,
     Variant,
     other_teeth,
     own_teeth,
     plain_contacts,
     with_own_teeth,
 )
-from facegear.drives.verdict import driven
+from facegear.drives.verdict import FORCES, driven
 from facegear.floquet.models import Excited, replace_at
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.parallel import each_in_processes, in_processes

@@ -17,18 +17,6 @@ PAGE = "assessment.html"
 """Name of the page among the files of an assessment."""
 
 
-def assessment_directory(drive_file: str | Path) -> Path:
-    """Return the folder that an assessment goes to if none is named: beside the drive file.
-
-    Examples
-    --------
-    >>> assessment_directory("drives/my_drive.yaml").as_posix()
-    'drives/my_drive_assessment'
-    """
-    path = Path(drive_file)
-    return path.with_name(f"{path.stem}_assessment")
-
-
 def sections(found: Assessment) -> tuple[Section, ...]:
     """Sections of the page: verdict, models, tolerances, dynamic load, what was left out."""
     return tuple(make(found) for make in (_verdict, _models, _tolerances, _dynamic_load, _left_out))

@@ -366,10 +366,11 @@ def _assess(options: argparse.Namespace) -> int:
     file = read_drive_file(options.file)
     # These take longer to load than a mistake takes to be told.
     from facegear.drives.assess import assess
-    from facegear.drives.assessment_files import assessment_directory, write_assessment
+    from facegear.drives.assessment_files import write_assessment
+    from facegear.drives.report_files import results_directory
 
     found = assess(file, jobs=options.jobs, tell=_say)
-    page = write_assessment(found, options.output or assessment_directory(options.file))
+    page = write_assessment(found, options.output or results_directory(options.file, "assessment"))
     _tell(found.headline)
     _tell(f"The assessment: {page.resolve().as_uri()}")
     return DONE

@@ -24,8 +24,8 @@ PAGE = "report.html"
 _FILES = "Files"
 
 
-def results_directory(drive_file: str | Path) -> Path:
-    """Return the folder that a report goes to if none is named: beside the drive file.
+def results_directory(drive_file: str | Path, kind: str = "results") -> Path:
+    """Return the folder that results of a kind go to if none is named: beside the drive file.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def results_directory(drive_file: str | Path) -> Path:
     'drives/my_drive_results'
     """
     path = Path(drive_file)
-    return path.with_name(f"{path.stem}_results")
+    return path.with_name(f"{path.stem}_{kind}")
 
 
 def parts_of(found: Findings) -> dict[str, Callable[[Path], object]]:

@@ -12,13 +12,9 @@ from facegear.drives.contacts import NAMES, USUAL_CORRECTION, transverse_contact
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID, COMPLIANCE, FlexibleTeeth
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.edge_stiffness import Following
 from facegear.mechanics.sharing import RULES
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.mechanics.transverse import FaceGears, Transverse
-
-FORCES: dict[Following, str] = {"follower": "force follows the rim", "dead": "force keeps its direction"}
-"""Directions of the driving force, in words."""
 
 RIGID, RIGID_TOTAL = "rigid teeth, frozen rate", "rigid teeth, total rate"
 """Teeth as in chapters 4 to 6, and the same with bearings that follow the moving contact."""

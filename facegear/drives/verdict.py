@@ -26,13 +26,13 @@ from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_
 from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import rpm
 
-_FORCES: dict[Following, str] = {"follower": "force follows the rim", "dead": "force keeps its direction"}
+FORCES: dict[Following, str] = {"follower": "force follows the rim", "dead": "force keeps its direction"}
+"""Directions of the driving force, in words."""
+
 # Speeds at which the mean system is tried for flutter.
 _SPEEDS = 61
 # Windows that are named one by one.
 _NAMED = 3
-# Two cases whose unstable parts of the speeds differ by more than this are said to differ.
-_ALIKE = 0.05
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class Case:
     @property
     def name(self) -> str:
         """Both in words."""
-        return f"{self.contact}, {_FORCES[self.following]}"
+        return f"{self.contact}, {FORCES[self.following]}"
 
 
 def driven(file: DriveFile, following: Following, contact: Contact) -> FaceGears:
@@ -105,7 +105,7 @@ def cases(
     tuple of Case
         Those with the file's contact first, the following force before the dead one.
     """
-    settings = [(name, contact, force) for name, contact in file.contacts.items() for force in _FORCES]
+    settings = [(name, contact, force) for name, contact in file.contacts.items() for force in FORCES]
     models = [driven(file, force, contact) for _, contact, force in settings]
     work = [(model, file.requirements.speeds, tolerance, most_steps) for model in models]
     found = []

@@ -11,8 +11,8 @@ from facegear.drives.assess import Assessment, Outcome, assess, gaps, told
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.tolerances import Tolerances, WorstCase
-from facegear.drives.variants import FORCES, RIGID, RIGID_TOTAL, Variant
-from facegear.drives.verdict import cases
+from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant
+from facegear.drives.verdict import FORCES, cases
 from facegear.floquet.labels import Combination
 from facegear.floquet.response import steady_response
 from facegear.maps.tracing import Tongue, tongues
