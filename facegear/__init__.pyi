@@ -21,6 +21,8 @@ from .geometry.kinematics import SkewLine as SkewLine
 from .geometry.phases import phase_split as phase_split
 from .geometry.point_contact import Misalignment as Misalignment
 from .geometry.point_contact import UnloadedContact as UnloadedContact
+from .maps.campbell import campbell as campbell
+from .maps.campbell import mode_shapes as mode_shapes
 from .maps.response_map import frequency_response as frequency_response
 from .maps.response_map import response_map as response_map
 from .maps.stability_map import stability_map as stability_map
@@ -73,6 +75,7 @@ __all__ = [
     "UnloadedContact",
     "WithoutRigidMotion",
     "assess",
+    "campbell",
     "critical_thickness",
     "error_estimate",
     "frequency_response",
@@ -80,6 +83,7 @@ __all__ = [
     "line_contact",
     "loaded_contact",
     "mesh_stiffness",
+    "mode_shapes",
     "multipliers",
     "phase_split",
     "point_contact",

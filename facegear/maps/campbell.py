@@ -1,0 +1,273 @@
+"""Natural motions of a model over speed: which is which where curves cross, and where the mesh frequency meets them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq, linear_sum_assignment
+
+from facegear.floquet.models import Coordinate, Model, require_model, system_at
+from facegear.floquet.modes import NaturalMotions
+from facegear.maps.stability_map import checked_speeds
+from facegear.support.parameters import integer_within, positive
+from facegear.support.types import ComplexArray, FloatArray
+
+if TYPE_CHECKING:
+    import xarray
+
+# Part of a motion that must be found again in the next for both to be one; else the step is halved, so many times.
+_SAME, _HALVINGS = 0.9, 14
+# Coordinates whose kinetic energies differ by less than this part move alike.
+_ALIKE = 0.02
+_MOST_HARMONICS = 20
+
+
+@dataclass(frozen=True, eq=False)
+class _Motions:
+    """Oscillating motions of the mean system at one speed.
+
+    Attributes
+    ----------
+    speed, mesh_frequency : float
+        [rad/s], [Hz].
+    exponents : complex array, shape (m,)
+        p [1/s], ascending by frequency.
+    states : complex array, shape (2n, m)
+        Columns (q, q̇) of unit energy.
+    amplitudes : complex array, shape (m, 2n)
+        Rows that take a state to the amplitude of each motion.
+    energies : array, shape (n, m)
+        Kinetic energy in each coordinate.
+    """
+
+    speed: float
+    mesh_frequency: float
+    exponents: ComplexArray
+    states: ComplexArray
+    amplitudes: ComplexArray
+    energies: FloatArray
+
+    @classmethod
+    def at(cls, model: Model, speed: float) -> _Motions:
+        system = system_at(model, speed)
+        found = NaturalMotions.of_mean(system)
+        kept = found.oscillating
+        states = np.concatenate([found.displacements[:, kept], found.velocities[:, kept]])
+        size = np.linalg.norm(found.from_state @ states, axis=0)
+        # Nearly dependent motions, as at critical damping, only blur the parts.
+        rows = (np.linalg.pinv(found.vectors) @ found.from_state)[kept] * size[:, np.newaxis]
+        velocities = found.velocities[:, kept]
+        energies = (velocities.conj() * (found.mass @ velocities)).real
+        return cls(
+            speed,
+            1.0 / system.period,
+            found.exponents[kept],
+            states / size,
+            rows,
+            energies,
+        )
+
+    def parts_of(self, other: _Motions) -> FloatArray:
+        """Parts of these motions in those of another speed, (m, m of the other)."""
+        return np.asarray(np.abs(self.amplitudes @ other.states))
+
+
+def campbell(model: Model, speeds: ArrayLike, *, harmonics: int = 3) -> xarray.Dataset:
+    """Natural frequencies and damping of the mean system over speed, each motion followed through crossings.
+
+    Parameters
+    ----------
+    model : Model
+    speeds : array_like, shape (S,)
+        Speeds [rad/s], greater than 0, ascending. Between two of them steps are halved until motions are told apart.
+    harmonics : int
+        Harmonics of the mesh frequency that are to meet them, 1 to 20.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along "mode" and "speed": ``natural_frequency`` [Hz] (damped), ``damping_ratio`` [-] and ``log_decrement`` [-];
+        not a number where a motion does not oscillate. ``mode`` numbers motions by their frequency at the first speed
+        at which they are there, ``mode_name`` says which coordinates move most then. Along "speed":
+        ``mesh_frequency`` [Hz]. Along "crossing": ``crossing_speed`` [rad/s], at which the harmonic
+        ``crossing_harmonic`` of the mesh frequency meets the motion ``crossing_mode``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument.
+
+    Examples
+    --------
+    Waves of a disk run with its rotation and against it: of one nodal diameter, at 600 rpm, by 10 Hz each.
+
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03, nodal_circles=0, nodal_diameters=1)
+    >>> disk = fg.Transverse(body, fg.MeshLoad(stiffness=0.0, damping=0.0, mass=0.0))
+    >>> found = fg.campbell(disk, fg.rad_per_s([1.0, 600.0]))
+    >>> found.mode_name.values.tolist()
+    ['face gear (0, 1)', 'face gear (0, 1)', 'face gear (0, 0)']
+    >>> against, along, _ = found.natural_frequency.values[:, -1]
+    >>> round(float(along - against), 6)
+    20.0
+    """
+    import xarray
+
+    require_model(model)
+    axis = checked_speeds(speeds)
+    count = integer_within("harmonics", harmonics, 1, _MOST_HARMONICS)
+    first = _Motions.at(model, float(axis[0]))
+    tracks = list(range(first.exponents.size))
+    names = [_name(first, mode, model.coordinates) for mode in tracks]
+    shown = [(first, tracks)]
+    for speed in axis[1:].tolist():
+        shown.append(_followed(model, *shown[-1], speed, names, _HALVINGS))
+    exponents = np.full((len(names), axis.size), complex(np.nan, np.nan))
+    for place, (motions, owners) in enumerate(shown):
+        exponents[owners, place] = motions.exponents
+    ratio = -exponents.real / np.abs(exponents)
+    mesh = np.array([motions.mesh_frequency for motions, _ in shown])
+    crossings = _crossings(model, shown, exponents, count)
+    both = ("mode", "speed")
+    return xarray.Dataset(
+        {
+            "natural_frequency": (both, exponents.imag / (2 * math.pi), {"units": "Hz"}),
+            "damping_ratio": (both, ratio, {"units": "1"}),
+            "log_decrement": (both, 2 * math.pi * ratio / np.sqrt(1.0 - ratio**2), {"units": "1"}),
+            "mesh_frequency": ("speed", mesh, {"units": "Hz"}),
+            "crossing_speed": (
+                "crossing",
+                np.array([c[0] for c in crossings], dtype=float),
+                {"units": "rad/s"},
+            ),
+            "crossing_mode": ("crossing", np.array([c[1] + 1 for c in crossings], dtype=int)),
+            "crossing_harmonic": ("crossing", np.array([c[2] for c in crossings], dtype=int)),
+        },
+        {
+            "mode": np.arange(1, len(names) + 1),
+            "mode_name": ("mode", names),
+            "speed": ("speed", axis, {"units": "rad/s"}),
+        },
+        {"model": repr(model)},
+    )
+
+
+def _followed(
+    model: Model, before: _Motions, owners: Sequence[int], speed: float, names: list[str], halvings: int
+) -> tuple[_Motions, list[int]]:
+    """Motions at a speed, and which track each belongs to; those that are new get a name."""
+    here = _Motions.at(model, speed)
+    parts = before.parts_of(here)
+    rows, columns = linear_sum_assignment(-parts)
+    if halvings and rows.size and parts[rows, columns].min() < _SAME:
+        middle = (before.speed + speed) / 2.0
+        halfway, known = _followed(model, before, owners, middle, names, halvings - 1)
+        return _followed(model, halfway, known, speed, names, halvings - 1)
+    found = dict(zip(columns.tolist(), (owners[row] for row in rows.tolist()), strict=True))
+    for mode in range(here.exponents.size):
+        if mode not in found:
+            found[mode] = len(names)
+            names.append(_name(here, mode, model.coordinates))
+    return here, [found[mode] for mode in range(here.exponents.size)]
+
+
+def _name(motions: _Motions, mode: int, coordinates: Sequence[Coordinate]) -> str:
+    """Name the coordinates that move most in a motion; cosine and sine of one shape are named once."""
+    energy = motions.energies[:, mode]
+    most = [
+        c.name for c, part in zip(coordinates, energy, strict=True) if part > (1.0 - _ALIKE) * energy.max()
+    ]
+    return " and ".join(dict.fromkeys(name.removesuffix(" cos").removesuffix(" sin") for name in most))
+
+
+def _crossings(
+    model: Model, shown: Sequence[tuple[_Motions, list[int]]], exponents: ComplexArray, harmonics: int
+) -> list[tuple[float, int, int]]:
+    """Speeds at which harmonics of the mesh frequency meet motions: speed, track, harmonic, ascending."""
+    found = []
+    for place, ((before, owners), (after, _)) in enumerate(pairwise(shown)):
+        for mode, track in enumerate(owners):
+            ends = exponents[track, place : place + 2].imag / (2 * math.pi)
+            for harmonic in range(1, harmonics + 1):
+                low, high = ends - harmonic * np.array([before.mesh_frequency, after.mesh_frequency])
+                if low * high <= 0.0 and np.isfinite(low * high):
+                    at = _meets(model, before, mode, harmonic, after.speed)
+                    found.append((at, track, harmonic))
+    return sorted(found)
+
+
+def _meets(model: Model, before: _Motions, mode: int, harmonic: int, stop: float) -> float:
+    """Speed at which a motion meets a harmonic, between that where it is known and another."""
+
+    def apart(speed: float) -> float:
+        here = _Motions.at(model, speed)
+        same = int(before.parts_of(here)[mode].argmax())
+        return float(here.exponents[same].imag / (2 * math.pi) - harmonic * here.mesh_frequency)
+
+    if apart(before.speed) * apart(stop) > 0.0:
+        # The motion is another one at the far end, where they veer: what is between is a straight line.
+        return (before.speed + stop) / 2.0
+    return float(brentq(apart, before.speed, stop, rtol=1e-12))
+
+
+def mode_shapes(model: Model, speed: float) -> xarray.Dataset:
+    """Natural motions of the mean system at a speed: how much each coordinate moves, and when.
+
+    Parameters
+    ----------
+    model : Model
+    speed : float
+        [rad/s], greater than 0.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along "mode", ascending by frequency: ``natural_frequency`` [Hz], ``damping_ratio`` [-], ``mode_name``. Along
+        "mode" and "coordinate": ``amplitude``, the largest of each motion 1, and ``phase`` [rad], q ~ cos(ωt + phase),
+        that of the largest 0, each coordinate in its own unit; ``energy_share``, of the kinetic energy, 1 in all.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument.
+
+    Examples
+    --------
+    >>> import facegear as fg
+    >>> from facegear.mechanics.gearboxes import FIGURES
+    >>> found = fg.mode_shapes(FIGURES["7.12a"].model(), fg.rad_per_s(500.0))
+    >>> found.mode_name.values.tolist()
+    ['load', 'face gear', 'pinion']
+    """
+    import xarray
+
+    require_model(model)
+    motions = _Motions.at(model, positive("speed", speed, "rad/s"))
+    n = motions.energies.shape[0]
+    moved = motions.states[:n]
+    largest = moved[np.abs(moved).argmax(axis=0), np.arange(moved.shape[1])]
+    relative = (moved / largest).T
+    both = ("mode", "coordinate")
+    ratio = -motions.exponents.real / np.abs(motions.exponents)
+    modes = range(motions.exponents.size)
+    return xarray.Dataset(
+        {
+            "natural_frequency": ("mode", motions.exponents.imag / (2 * math.pi), {"units": "Hz"}),
+            "damping_ratio": ("mode", ratio, {"units": "1"}),
+            "amplitude": (both, np.abs(relative), {"units": "1"}),
+            "phase": (both, np.angle(relative), {"units": "rad"}),
+            "energy_share": (both, (motions.energies / motions.energies.sum(axis=0)).T, {"units": "1"}),
+        },
+        {
+            "mode": np.arange(1, motions.exponents.size + 1),
+            "mode_name": ("mode", [_name(motions, mode, model.coordinates) for mode in modes]),
+            "coordinate": [coordinate.name for coordinate in model.coordinates],
+        },
+        {"model": repr(model), "speed": float(speed)},
+    )

@@ -1,0 +1,81 @@
+"""Natural frequencies over speed, and natural motions at one."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, panels, styled
+from facegear.support.parameters import rpm
+
+
+@styled
+def campbell(data: xr.Dataset) -> Figure:
+    """Draw natural frequencies in Hz over speed in rpm, coloured by damping, and where the mesh meets them.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        From :func:`facegear.maps.campbell.campbell`.
+    """
+    figure, (ax,) = panels(1, 1, 5.0)
+    speed, frequency = rpm(data["speed"].values), data["natural_frequency"].values
+    damping = data["log_decrement"].values
+    shades = Normalize(0.0, max(float(np.nanmax(damping)), 1e-9))
+    for row, decrement in zip(frequency, damping, strict=True):
+        ax.plot(speed, row, color=GREY, linewidth=0.8, zorder=1)
+        points = ax.scatter(speed, row, c=decrement, cmap=GROWTH, norm=shades, s=9, zorder=2)
+    mesh = data["mesh_frequency"].values
+    top = 1.06 * float(np.nanmax(frequency))
+    for harmonic in np.unique(data["crossing_harmonic"].values).tolist():
+        line = harmonic * mesh
+        ax.plot(speed, np.where(line <= top, line, np.nan), "--", color=INK, linewidth=1.0)
+        # One below the other, so that steep lines keep their names apart.
+        height = min((1.0 - 0.07 * (harmonic - 1)) * top, line[-1])
+        ax.annotate(
+            f"{harmonic} × mesh",
+            (float(np.interp(height, line, speed)), height),
+            xytext=(4, -2),
+            textcoords="offset points",
+            va="top",
+            fontsize=8,
+            bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6},
+        )
+    at = rpm(data["crossing_speed"].values)
+    met = data["crossing_harmonic"].values * np.interp(at, speed, mesh)
+    ax.plot(
+        at, met, "o", color=VERMILION, markersize=4, markerfacecolor="none", label="met by the mesh", zorder=3
+    )
+    ax.set(
+        xlim=(speed[0], speed[-1]),
+        ylim=(0.0, top),
+        xlabel="speed of the face gear [rpm]",
+        ylabel="frequency [Hz]",
+    )
+    figure.colorbar(points, ax=ax, label="logarithmic decrement")
+    return figure
+
+
+@styled
+def mode_shapes(data: xr.Dataset) -> Figure:
+    """Draw the part of each coordinate in the kinetic energy of each natural motion.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        From :func:`facegear.maps.campbell.mode_shapes`.
+    """
+    count, names = data.sizes["mode"], data["coordinate"].values.tolist()
+    figure, (ax,) = panels(1, 1, 0.26 * count + 2.2)
+    shares = data["energy_share"].values
+    mesh = ax.pcolormesh(
+        np.arange(len(names)), np.arange(count), shares, cmap=GROWTH, norm=Normalize(0.0, 1.0)
+    )
+    pairs = zip(data["mode"].values, data["natural_frequency"].values, strict=True)
+    ax.set_yticks(np.arange(count), [f"{mode}: {frequency:.0f} Hz" for mode, frequency in pairs], fontsize=8)
+    ax.set_xticks(np.arange(len(names)), names, rotation=90, fontsize=8)
+    ax.grid(False)
+    figure.colorbar(mesh, ax=ax, label="part of the kinetic energy")
+    return figure
