@@ -166,11 +166,11 @@ class Findings:
         return plate_modes(self.file.transverse.gear.body)
 
     @cached_property
-    def campbell(self) -> xr.Dataset:
+    def combinations(self) -> xr.Dataset:
         """Mesh frequency against natural frequencies of the first case."""
         first, (low, high) = self.cases[0].found, self.range_rpm
         charted = np.linspace(low, high, _CHARTED)
-        return report.campbell(first.model, first.tongues, charted, self.provenance)
+        return report.combinations(first.model, first.tongues, charted, self.provenance)
 
     @cached_property
     def map_follower(self) -> xr.Dataset:

@@ -236,7 +236,7 @@ def safe_windows(table: xr.Dataset, speeds: tuple[float, float]) -> xr.Dataset:
 # --- charts over speed ------------------------------------------------------------------------------------------
 
 
-def campbell(model: Model, found: Sequence[Tongue], speeds_rpm: ArrayLike, parameters: str) -> xr.Dataset:
+def combinations(model: Model, found: Sequence[Tongue], speeds_rpm: ArrayLike, parameters: str) -> xr.Dataset:
     """Mesh frequency against natural frequencies of the mean system and their combinations.
 
     Parameters

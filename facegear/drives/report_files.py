@@ -60,7 +60,7 @@ def parts_of(found: Findings) -> dict[str, Callable[[Path], object]]:
     arrays: dict[str, Callable[[], xr.Dataset | None]] = {
         "bases": lambda: found.bases,
         "modes": lambda: found.modes,
-        "campbell": lambda: found.campbell,
+        "combinations": lambda: found.combinations,
         "map_follower": lambda: found.map_follower,
         "map_dead": lambda: found.map_dead,
     }

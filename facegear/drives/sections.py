@@ -166,7 +166,7 @@ def frequencies(found: Findings) -> Section:
 def origins(found: Findings) -> Section:
     """Show where the tongues come from."""
     picture = Picture(
-        draw.campbell(found.campbell, found.tongue_tables[found.cases[0].name]),
+        draw.combinations(found.combinations, found.tongue_tables[found.cases[0].name]),
         "Mesh frequency over speed against the natural frequencies of the mean transverse system (pale) and "
         "those of their combinations that open a tongue (dashed), for the first case.",
         "A straight line of mesh frequency crosses dashed curves of combined natural frequencies; thick marks "

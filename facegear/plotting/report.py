@@ -26,13 +26,13 @@ _SPEED = "speed of the face gear [rpm]"
 
 
 @styled
-def campbell(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
+def combinations(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
     """Mesh frequency against combinations of natural frequencies; dots where they meet in a tongue.
 
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`facegear.drives.report.campbell`.
+        From :func:`facegear.drives.report.combinations`.
     tongues : xarray.Dataset
         From :func:`facegear.drives.report.tongue_table`.
     """

@@ -179,7 +179,7 @@ def test_report_ranks_what_can_be_changed():
     assert np.isfinite(table["growth_slope"].values).all()
     tongue_table = report.tongue_table(FOUND, "own model")
     assert tongue_table["label"].values.tolist() == [tongue.label for tongue in FOUND]
-    chart = report.campbell(MODEL, FOUND, [300.0, 400.0], "own model")
+    chart = report.combinations(MODEL, FOUND, [300.0, 400.0], "own model")
     assert chart.sizes["mode"] == 4
     grown = report.growth_map(MODEL, "tooth_stiffness", [1e6, 2e6], [300.0, 400.0], "own model")
     assert grown["growth_rate"].shape == (2, 2)

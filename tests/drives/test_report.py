@@ -134,7 +134,7 @@ def test_windows_of_a_stable_and_of_an_unstable_range():
 
 def test_combinations_cross_the_mesh_frequency_in_their_tongues():
     speeds = np.linspace(500.0, 720.0, 23)
-    chart = report.campbell(CASE_1.transverse, FOUND, speeds, "case 1")
+    chart = report.combinations(CASE_1.transverse, FOUND, speeds, "case 1")
     np.testing.assert_allclose(chart["mesh_frequency"], 130 * speeds / 60, rtol=1e-12)
     assert (np.diff(chart["natural_frequency"], axis=0) >= 0).all()
     for label, line in zip(chart["label"].values, chart["combination"], strict=True):
@@ -144,8 +144,8 @@ def test_combinations_cross_the_mesh_frequency_in_their_tongues():
         assert rpm(tongue.lower) - 15 < crossing < rpm(tongue.upper) + 15
 
 
-def test_campbell_of_the_gearbox_has_its_natural_frequencies():
-    chart = report.campbell(BOX.torsional, (), [10.0], "box")
+def test_combinations_of_the_gearbox_has_its_natural_frequencies():
+    chart = report.combinations(BOX.torsional, (), [10.0], "box")
     # All dampings are 10 µs times a stiffness: ω √(1 − (10 µs ω/2)²).
     free = BOX.torsional.natural_frequencies()
     damped = free * np.sqrt(1 - (1e-5 * free / 2) ** 2) / (2 * np.pi)

@@ -25,7 +25,7 @@ def texts(ax):
 
 
 @pytest.mark.parametrize("table", [NONE, TWO], ids=["stable", "two tongues"])
-def test_campbell_marks_every_tongue_on_the_mesh_frequency(table):
+def test_combinations_mark_every_tongue_on_the_mesh_frequency(table):
     count = table.sizes["tongue"]
     data = xr.Dataset(
         {
@@ -35,7 +35,7 @@ def test_campbell_marks_every_tongue_on_the_mesh_frequency(table):
         },
         coords={"speed_rpm": SPEEDS, "label": table["label"].values},
     )
-    (ax,) = draw.campbell(data, table).axes
+    (ax,) = draw.combinations(data, table).axes
     assert texts(ax) == table["label"].values.tolist()
     drawn = [line.get_xydata() for line in ax.lines if line.get_linewidth() == 5 and len(line.get_xdata())]
     np.testing.assert_allclose(
