@@ -164,9 +164,11 @@ class Assessment:
 
     @cached_property
     def always_stable(self) -> Intervals:
-        """Intervals of speed [rad/s] in which every model, torsion and every value in its tolerances is stable."""
+        """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable."""
         every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
         every += [interval for case in self.worst.values() for interval in case.swept]
+        # What opens between two corners has no width that is known.
+        every += [(each.speed, each.speed) for case in self.worst.values() for each in case.opens]
         every += [interval for found in self.torsion.values() for interval in _intervals(found)]
         return gaps(united(every), self.speeds)
 
@@ -264,7 +266,9 @@ class Assessment:
         """What no model includes."""
         return (
             "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
-            "temperature; the driving force is the same at all speeds, and speeds outside the range are not looked at."
+            "temperature; tolerances are those of the disk's motion and of the file's own contact and teeth, and the ones "
+            "of stiffness and damping leave torsion as it is; the driving force is the same at all speeds, and speeds "
+            "outside the range and its tolerance are not looked at."
         )
 
     def table(self) -> xr.Dataset:
