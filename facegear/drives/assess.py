@@ -266,9 +266,9 @@ class Assessment:
         """What no model includes."""
         return (
             "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
-            "temperature; tolerances are those of the disk's motion and of the file's own contact and teeth, and those of "
-            "stiffness and damping leave torsion as it is; the driving force is the same at all speeds, and speeds outside "
-            "the range and its tolerance are not looked at."
+            "temperature; tolerances are those of the disk's motion and of the file's own contact and teeth, and those "
+            "of stiffness and damping leave torsion as it is; the driving force is the same at all speeds, and speeds "
+            "outside the range and its tolerance are not looked at."
         )
 
     def table(self) -> xr.Dataset:
