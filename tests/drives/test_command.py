@@ -176,9 +176,10 @@ def test_the_command_leaves_a_page_beside_the_file(tmp_path):
     assert done.returncode == 0, done.stderr
     results = tmp_path / "stable_results"
     assert done.stdout == f"The report: {(results / 'report.html').as_uri()}\n"
-    assert [line.split(":")[0] for line in done.stderr.splitlines()] == [
-        f"section {k} of 12" for k in range(1, 13)
-    ]
+    sections_of = [f"section {k} of 12" for k in range(1, 13)]
+    cases_of = [f"case {k} of 4" for k in range(1, 5)]
+    told = [line.split(":")[0] for line in done.stderr.splitlines()]
+    assert told == [sections_of[0], *cases_of, *sections_of[1:]]
     page = (results / "report.html").read_text(encoding="utf-8")
     assert "for stability nothing has to change" in page
     assert "Stable at all speeds from 950 to 1000 rpm under the driving force of 20 kW a pinion" in page
