@@ -36,6 +36,7 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
 from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
+from facegear.mechanics.tooth_damage import DamagedTooth
 from facegear.mechanics.torsional import Gearbox, Torsional, mesh_stiffness
 from facegear.mechanics.transverse import FaceGears, Transverse
 from facegear.mechanics.two_gears import Role, TwoGears, fitting_angles
@@ -80,6 +81,8 @@ class DriveFile:
         What each pinion does between two gears; None where there is one gear.
     play : Backlash or None
         The gearbox with play of its teeth, under the torque of one pinion's power; None where there is no play.
+    cracked : DamagedTooth or None
+        The gearbox with one damaged tooth of the face gear, under the same torque; None where none is damaged.
     force_at : str
         Where the driving force presses, one of :data:`facegear.drives.forces.PLACES`.
     tolerances : Tolerances
@@ -96,6 +99,7 @@ class DriveFile:
     teeth: FlexibleTeeth | None = None
     roles: tuple[Role, ...] | None = None
     play: Backlash | None = None
+    cracked: DamagedTooth | None = None
     force_at: str = RIM
     tolerances: Tolerances = AS_GIVEN
     content: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
@@ -407,13 +411,14 @@ def _built(found: _Found) -> DriveFile:
         transverse = gear if roles is None else _by_model(found, "second_gear", lambda: TwoGears(gear, roles))
     _by_model(found, "material", lambda: _by_model(found, "body", lambda: transverse.gear.bearing_stiffness))
     requirements = _requirements(found, body)
-    torsional, play = None, None
+    torsional, play, cracked = None, None, None
     if (gearbox := values["gearbox"]) is not None:
         torsional = _following(
             found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive), material)
         )
         torque = requirements.power / requirements.pinion_speed * drive.gear_ratio
         play = _by_model(found, "gearbox", lambda: _play(gearbox, torsional, torque))
+        cracked = _by_model(found, "gearbox", lambda: _cracked(gearbox, torsional, torque))
     force_at = values["operation"]["force_at"]
     _by_model(
         found,
@@ -422,7 +427,17 @@ def _built(found: _Found) -> DriveFile:
     )
     tolerances = Tolerances(**values["tolerances"])
     return DriveFile(
-        found.name, transverse, requirements, contacts, torsional, teeth, roles, play, force_at, tolerances
+        name=found.name,
+        transverse=transverse,
+        requirements=requirements,
+        contacts=contacts,
+        torsional=torsional,
+        teeth=teeth,
+        roles=roles,
+        play=play,
+        cracked=cracked,
+        force_at=force_at,
+        tolerances=tolerances,
     )
 
 
@@ -534,7 +549,7 @@ def _contacts(
 def _torsional(
     drive: Drive, gearbox: dict[str, Any], contact: Contact, material: Material
 ) -> Torsional | HeavyShafts:
-    values = {name: value for name, value in gearbox.items() if name != "gap"}
+    values = {name: value for name, value in gearbox.items() if name not in ("gap", "loss")}
     arm = values.pop("arm")
     lengths = {name: values.pop(name) for name in ("input_length", "output_length")}
     for part in ("mesh", "input", "output"):
@@ -555,6 +570,15 @@ def _play(gearbox: dict[str, Any], torsional: Any, torque: float) -> Backlash | 
             f"gap must be at most the module, {1e6 * module:.6g} µm, got {1e6 * gearbox['gap']:.6g} µm"
         )
     return Backlash(torsional, torque, gearbox["gap"])
+
+
+def _cracked(gearbox: dict[str, Any], torsional: Any, torque: float) -> DamagedTooth | None:
+    """Damage one tooth of the gearbox, if the file does."""
+    if gearbox["loss"] == 0.0:
+        return None
+    if gearbox["input_length"] or gearbox["output_length"]:
+        raise ValueError("loss must be 0 beside lengths of shafts: damage is computed with massless ones")
+    return DamagedTooth(torsional, gearbox["loss"], torque=torque)
 
 
 def _check_bore(drive: Drive, bore_radius: float) -> None:

@@ -382,6 +382,18 @@ _GEARBOX = Section(
             quantity="gap",
         ),
         Key(
+            "damaged_tooth_percent",
+            "part of its stiffness and damping that one tooth of the face gear has lost, for what would show it; 0 for "
+            "none",
+            "number",
+            "%",
+            0.1,
+            99.0,
+            or_zero=True,
+            default=0.0,
+            quantity="loss",
+        ),
+        Key(
             "arm",
             "moment arm of the mesh force: as printed (7-3), or the constant one of conjugate teeth",
             "choice",

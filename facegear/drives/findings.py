@@ -15,6 +15,7 @@ import xarray as xr
 
 from facegear.design import changes
 from facegear.drives import report, verdict
+from facegear.drives.damage import signs_of_damage
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.play import motions_in_tongues
 from facegear.drives.report import Row
@@ -30,6 +31,8 @@ TORSION = "torsion"
 INPUT_STIFFNESS = "gearbox.input_stiffness"
 """Parameter that is swept in torsion."""
 
+# Speeds at which it is listened for a damaged tooth.
+_LISTENED = 13
 # Speeds of the chart of natural frequencies.
 _CHARTED = 41
 # Widths of tongues that differ by less are the same [rpm].
@@ -206,6 +209,14 @@ class Findings:
         if self.file.play is None or not self.torsional_tongues:
             return None
         return motions_in_tongues(self.file.play, self.torsional_tongues, self.provenance)
+
+    @cached_property
+    def damage(self) -> xr.Dataset | None:
+        """What the damaged tooth of the file would show, at a few speeds; None where none is damaged."""
+        if self.file.cracked is None:
+            return None
+        low, high = self.range_rpm
+        return signs_of_damage(self.file.cracked, np.linspace(low, high, _LISTENED), self.provenance)
 
     @cached_property
     def torsional_rows(self) -> tuple[Row, ...]:

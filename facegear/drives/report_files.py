@@ -72,6 +72,8 @@ def parts_of(found: Findings) -> dict[str, Callable[[Path], object]]:
         tongues = {}  # the line of tongues.csv says why
     if file.play is not None and TORSION in tongues and found.play is not None:
         arrays["play"] = lambda: found.play
+    if file.cracked is not None:
+        arrays["damage"] = lambda: found.damage
     for name, table in tongues.items():
         arrays[f"tongues_{file_stem(name)}"] = partial(_same, table)
     drive = file.drive

@@ -224,6 +224,10 @@ def torsion(found: Findings) -> Section:
         parts.append(Paragraph("No tongue in torsion: with play near-rest motions stay near rest."))
     else:
         parts += _motions(found)
+    if found.damage is None:
+        parts.append(Paragraph("The file has no damaged tooth (gearbox.damaged_tooth_percent)."))
+    else:
+        parts += _damage(found)
     return Section(title, tuple(parts))
 
 
@@ -245,6 +249,34 @@ def _motions(found: Findings) -> list[Part]:
     )
     headings = ("tongue", "speed [rpm]", "compression of the teeth over that at rest", "motion")
     return [words, Table(headings, rows, "Motions of a gearbox whose teeth have play")]
+
+
+def _damage(found: Findings) -> list[Part]:
+    """Say what a damaged tooth would show."""
+    signs = found.damage
+    assert signs is not None
+    columns = (signs[name].values for name in ("speed_rpm", "growth_intact", "growth_damaged", "sideband"))
+    rows = tuple(
+        (
+            f"{speed:.4g}",
+            f"{intact:.4g}",
+            f"{damaged:.4g}",
+            f"{100 * sideband:.3g}" if np.isfinite(sideband) else "",
+        )
+        for speed, intact, damaged, sideband in zip(*columns, strict=True)
+    )
+    words = Paragraph(
+        "One tooth of the face gear is damaged (gearbox.damaged_tooth_percent), under the torque of one pinion's "
+        "power. Growth rates hardly tell; the response of a stable gearbox does, by lines at multiples of the "
+        "revolution beside those of the mesh. No sideband stands where either gearbox is unstable."
+    )
+    headings = (
+        "speed [rpm]",
+        "growth, intact [1/s]",
+        "growth, damaged [1/s]",
+        "largest sideband of the face gear's angle over its largest mesh harmonic [%]",
+    )
+    return [words, Table(headings, rows, "What a damaged tooth would show")]
 
 
 def thickness(found: Findings) -> Section:
