@@ -18,7 +18,7 @@ import xarray as xr
 
 from facegear.design.changes import effects_of_changes
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share, with_basis
-from facegear.drives.contacts import in_torsion
+from facegear.drives.contacts import torsional_under
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import best_change
 from facegear.drives.report import describe
@@ -31,7 +31,7 @@ from facegear.drives.variants import (
     with_own_teeth,
 )
 from facegear.drives.verdict import FORCES, driven
-from facegear.floquet.models import Excited, replace_at
+from facegear.floquet.models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.parallel import each_in_processes, in_processes
 from facegear.maps.response_map import frequency_response
@@ -93,8 +93,8 @@ class Assessment:
     outcomes : tuple of Outcome
         The file's own contact and teeth first.
     torsion : dict of str to tuple of Tongue
-        Tongues in torsion under each contact and each arm of the mesh force, the file's own first; empty where the file
-        has no gearbox.
+        Tongues in torsion under each contact and each arm of the mesh force, the file's own first, over the range of
+        speed with its tolerance; empty where the file has no gearbox.
     worst : dict of str to WorstCase
         Of the file's own contact and teeth, by the direction of the force; empty where the file has no tolerances.
     response : xarray.Dataset or None
@@ -189,9 +189,11 @@ class Assessment:
         else:
             words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
         if self.torsion:
+            still = sum(not found for found in self.torsion.values())
             words += (
-                f" In torsion {sum(not found for found in self.torsion.values())} of {len(self.torsion)} are."
+                f" Of {len(self.torsion)} models of torsion {still} {'is' if still == 1 else 'are'} stable"
             )
+            words += " in the range with its tolerance." if self.file.tolerances.speed else "."
         words += f" Stable under all of them: {told(self.always_stable)}."
         words += f" Unstable under all of them: {told(self.always_unstable)}."
         if self.verdict != SAFE:
@@ -251,14 +253,18 @@ class Assessment:
         """Largest force of a tooth pair over speed in torsion, against that at rest, in words; empty if not known."""
         if self.response is None:
             return ""
-        highest = self.response["force_highest"].max("load")
-        at = int(highest.fillna(-np.inf).argmax("speed"))
+        known = self.response.dropna("speed", subset=["force_highest"])
+        if not known.sizes["speed"]:
+            return "In torsion it is unstable at all speeds looked at: there is no steady load of the teeth."
+        highest = known["force_highest"].max("load")
+        at = int(highest.argmax("speed"))
         largest, speed = float(highest[at]), float(highest.speed[at])
-        parted = 100 * float((self.response["force_lowest"].min("load") < 0.0).mean())
+        parted = int((known["force_lowest"].min("load") < 0.0).sum())
+        count, every = known.sizes["speed"], self.response.sizes["speed"]
         return (
-            f"In torsion, where it is stable and flanks do not part, a tooth pair bears up to {largest:.4g} N, at "
-            f"{rpm(speed):.4g} rpm: {largest / self.static_force:.3g} times the whole static force of "
-            f"{self.static_force:.4g} N. At {parted:.3g} % of {highest.size} speeds flanks would part."
+            f"In torsion, at {count} of {every} speeds where it is stable, and as long as flanks do not part, a tooth "
+            f"pair bears up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / self.static_force:.3g} times the "
+            f"whole static force of {self.static_force:.4g} N. At {parted} of these {count} speeds flanks would part."
         )
 
     @property
@@ -360,7 +366,7 @@ def assess(
     ]
     first = tongues(cases[0].model, speeds, progress=False)
     share = 100 * unstable_share(first, speeds)
-    say(f"first of {len(cases)} cases in its first basis: unstable at {share:.3g} % of the speeds")
+    say(f"the drive as its file has it, in the basis of the file: unstable at {share:.3g} % of the speeds")
     outcomes: list[Outcome] = []
     refused: list[str] = []
     others: list[Variant] = []
@@ -426,15 +432,14 @@ def _torsion(file: DriveFile, contacts: Mapping[str, Contact], jobs: int) -> dic
     """Tongues in torsion under each contact and each arm of the mesh force, the file's own first."""
     if file.torsional is None:
         return {}
-    # Shafts with mass stand around a gearbox with massless ones.
-    inside = ("torsional",) if hasattr(file.torsional, "torsional") else ()
-    own = attrgetter(".".join((*inside, "arm")))(file.torsional)
-    models = {}
-    for arm in sorted(_ARMS, key=lambda arm: arm != own):
-        for name, contact in contacts.items():
-            moved = replace_at(file.torsional, (*inside, "contact"), in_torsion(contact, file.drive))
-            models[f"{name}, {_ARMS[arm]}"] = replace_at(moved, (*inside, "arm"), arm)
-    found = in_processes(tongues, [(model, file.requirements.speeds) for model in models.values()], jobs)
+    own = attrgetter("torsional.arm" if hasattr(file.torsional, "torsional") else "arm")(file.torsional)
+    models = {
+        f"{name}, {_ARMS[arm]}": torsional_under(file.torsional, contact, file.drive, arm)
+        for arm in sorted(_ARMS, key=lambda arm: arm != own)
+        for name, contact in contacts.items()
+    }
+    speeds = file.tolerances.widened(file.requirements.speeds)
+    found = in_processes(tongues, [(model, speeds) for model in models.values()], jobs)
     return dict(zip(models, found, strict=True))
 
 

@@ -123,7 +123,7 @@ def _command(commands: Any, name: str, run: Any, does: str, examples: str) -> ar
     made: argparse.ArgumentParser = commands.add_parser(
         name,
         help=does,
-        description=f"{does[0].upper()}{does[1:]}.",
+        description=f"{does[0].upper()}{does[1:]}{'' if does.endswith('?') else '.'}",
         epilog=f"examples:\n{examples}\n\n{_CODES}",
     )
     made.set_defaults(run=run)
@@ -328,7 +328,7 @@ def _listed(value: Any) -> str:
 
 def _add_jobs(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "--jobs", type=int, default=-1, help="processes; -1 for one on each processor (%(default)s)"
+        "--jobs", type=_processes, default=-1, help="processes; -1 for one on each processor (%(default)s)"
     )
 
 
@@ -336,6 +336,13 @@ def _whole(text: str) -> int:
     number = int(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"must be at least 1, got {number}")
+    return number
+
+
+def _processes(text: str) -> int:
+    number = int(text)
+    if number == 0:
+        raise argparse.ArgumentTypeError("must be at least 1, or -1 for one on each processor, got 0")
     return number
 
 
@@ -356,6 +363,7 @@ def _report(options: argparse.Namespace) -> int:
     from facegear.drives.report_files import results_directory, write_report
 
     folder = options.output or results_directory(options.file)
+    _require_folder(folder)
     found = Findings(file, options.cells, options.tolerance, options.most_steps, options.jobs, _say)
     page = write_report(found, folder, _say)
     _tell(f"The report: {page.resolve().as_uri()}")
@@ -369,11 +377,20 @@ def _assess(options: argparse.Namespace) -> int:
     from facegear.drives.assessment_files import write_assessment
     from facegear.drives.report_files import results_directory
 
+    folder = options.output or results_directory(options.file, "assessment")
+    _require_folder(folder)
     found = assess(file, jobs=options.jobs, tell=_say)
-    page = write_assessment(found, options.output or results_directory(options.file, "assessment"))
+    page = write_assessment(found, folder)
     _tell(found.headline)
     _tell(f"The assessment: {page.resolve().as_uri()}")
     return DONE
+
+
+def _require_folder(folder: Path) -> None:
+    """Refuse a place that results cannot be written to before they are computed."""
+    there = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+        raise UsageError(f"--output must be a folder that can be written to, got {str(folder)!r}")
 
 
 def _check(options: argparse.Namespace) -> int:

@@ -9,7 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
+from facegear.floquet.models import replace_at
 from facegear.geometry.drive import Drive
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.paths import loaded_contact, point_contact
@@ -83,3 +85,20 @@ def in_torsion(contact: Contact, drive: Drive) -> Contact:
     if drive.has_line_contact:
         return replace(SKEW_LINE, contact_ratio=contact.contact_ratio)
     return replace(contact, sharing="each", rate="total")
+
+
+def torsional_under(torsional: Any, contact: Contact, drive: Drive, arm: str | None = None) -> Any:
+    """Return a torsional model of a drive file under another contact, and with another arm of the mesh force if given.
+
+    Parameters
+    ----------
+    torsional : Torsional or HeavyShafts
+    contact : Contact
+        As the transverse model has it.
+    drive : Drive
+    arm : {"printed", "conjugate"}, optional
+    """
+    # Shafts with mass stand around a gearbox with massless ones.
+    inside = ("torsional",) if hasattr(torsional, "torsional") else ()
+    moved = replace_at(torsional, (*inside, "contact"), in_torsion(contact, drive))
+    return moved if arm is None else replace_at(moved, (*inside, "arm"), arm)

@@ -50,6 +50,8 @@ def write_drive_file(file: DriveFile, path: str | Path) -> Path:
     >>> again == file
     True
     """
+    if not isinstance(file, DriveFile):
+        raise TypeError(f"file must be a DriveFile, as read_drive_file returns it, got {file!r}")
     text = drive_text(file.content)
     try:
         same = parse_drive(text) == file

@@ -298,7 +298,10 @@ def best_change(name: str, effect: xr.Dataset, tongues: Sequence[Tongue]) -> lis
     best = min(helpful, key=lambda place: (widths[place].round(6), growths[place]))
     slope = float(effect["width_slope"][best]) or float(effect["growth_slope"][best])
     what = f"ten percent {'more' if slope < 0 else 'less'} of {effect['change_name'].values[best]}"
+    width = f"the unstable width from {now:.4g} to {widths[best]:.4g} rpm and "
+    if abs(widths[best] - now) <= _SAME_WIDTH:
+        width = ""
     return [
-        f"Of small changes {what} helps most: it takes the unstable width from {now:.4g} to {widths[best]:.4g} rpm "
-        f"and the largest growth from {growth:.3g} to {growths[best]:.3g} 1/s ({name})."
+        f"Of small changes {what} helps most: it takes {width}the largest growth from {growth:.3g} to "
+        f"{growths[best]:.3g} 1/s ({name})."
     ]

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from facegear.drives import report
-from facegear.drives.contacts import NAMES
+from facegear.drives.contacts import NAMES, torsional_under
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.drive_keys import OVER_SI, SECTIONS, Key
 from facegear.drives.verdict import driven
@@ -20,7 +20,7 @@ from facegear.support import labelled
 from facegear.support.parameters import finite, integer_at_least, rpm
 from facegear.support.tables import write_table
 
-_GEARBOX = "gearbox"
+_GEARBOX, _TOLERANCES = "gearbox", "tolerances"
 # Part of its own value that a number is swept on either side.
 _HALF = 0.5
 
@@ -76,7 +76,9 @@ def models(file: DriveFile, contact: str, following: Following) -> dict[str, Mod
         raise ValueError(f"contact must be {' or '.join(possible)} for these teeth, got {contact!r}")
     chosen = possible[contact] if contact else next(iter(file.contacts.values()))
     transverse: Model = driven(file, following, chosen)
-    return {"": transverse} | ({_GEARBOX: file.torsional} if file.torsional is not None else {})
+    if file.torsional is None:
+        return {"": transverse}
+    return {"": transverse, _GEARBOX: torsional_under(file.torsional, chosen, file.drive)}
 
 
 def sweepable(found: Mapping[str, Model]) -> dict[str, tuple[Model, Key]]:
@@ -94,6 +96,9 @@ def sweepable(found: Mapping[str, Model]) -> dict[str, tuple[Model, Key]]:
     """
     keys: dict[str, tuple[Model, Key]] = {}
     for name, section in SECTIONS.items():
+        if name == _TOLERANCES:
+            # How far numbers may be off is none of a model, whatever it is called.
+            continue
         model = found.get(_GEARBOX) if name == _GEARBOX else found[""]
         for key in section.keys if model is not None else ():
             # Damping of a gearbox is a time in the file and a coefficient in the model.

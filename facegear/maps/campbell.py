@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq, linear_sum_assignment
 
-from facegear.floquet.models import Coordinate, Model, require_model, system_at
+from facegear.floquet.models import Model, require_model, system_at
 from facegear.floquet.modes import NaturalMotions
 from facegear.maps.stability_map import checked_speeds
 from facegear.support.parameters import integer_within, positive
@@ -22,10 +22,12 @@ if TYPE_CHECKING:
     import xarray
 
 # Part of a motion that must be found again in the next for both to be one; else the step is halved, so many times.
-_SAME, _HALVINGS = 0.9, 14
+_SAME, _HALVINGS = 0.9, 10
 # Coordinates whose kinetic energies differ by less than this part move alike.
 _ALIKE = 0.02
 _MOST_HARMONICS = 20
+# Relative difference from the mesh below which a motion is met at a speed that is given.
+_ON = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +64,10 @@ class _Motions:
         size = np.linalg.norm(found.from_state @ states, axis=0)
         # Nearly dependent motions, as at critical damping, only blur the parts.
         rows = (np.linalg.pinv(found.vectors) @ found.from_state)[kept] * size[:, np.newaxis]
-        velocities = found.velocities[:, kept]
-        energies = (velocities.conj() * (found.mass @ velocities)).real
+        # By the symmetric root of the mass, which shares out what couples two coordinates evenly: never negative.
+        values, axes = np.linalg.eigh(found.mass)
+        root = (axes * np.sqrt(np.maximum(values, 0.0))) @ axes.T
+        energies = np.abs(root @ found.velocities[:, kept]) ** 2
         return cls(
             speed,
             1.0 / system.period,
@@ -96,7 +100,8 @@ def campbell(model: Model, speeds: ArrayLike, *, harmonics: int = 3) -> xarray.D
         not a number where a motion does not oscillate. ``mode`` numbers motions by their frequency at the first speed
         at which they are there, ``mode_name`` says which coordinates move most then. Along "speed":
         ``mesh_frequency`` [Hz]. Along "crossing": ``crossing_speed`` [rad/s], at which the harmonic
-        ``crossing_harmonic`` of the mesh frequency meets the motion ``crossing_mode``.
+        ``crossing_harmonic`` of the mesh frequency meets the motion ``crossing_mode``. They are found where the
+        difference changes its sign from one of the speeds given to the next: two between the same two are missed.
 
     Raises
     ------
@@ -124,7 +129,7 @@ def campbell(model: Model, speeds: ArrayLike, *, harmonics: int = 3) -> xarray.D
     count = integer_within("harmonics", harmonics, 1, _MOST_HARMONICS)
     first = _Motions.at(model, float(axis[0]))
     tracks = list(range(first.exponents.size))
-    names = [_name(first, mode, model.coordinates) for mode in tracks]
+    names = [_name(first, mode, _names(model, first)) for mode in tracks]
     shown = [(first, tracks)]
     for speed in axis[1:].tolist():
         shown.append(_followed(model, *shown[-1], speed, names, _HALVINGS))
@@ -173,16 +178,21 @@ def _followed(
     for mode in range(here.exponents.size):
         if mode not in found:
             found[mode] = len(names)
-            names.append(_name(here, mode, model.coordinates))
+            names.append(_name(here, mode, _names(model, here)))
     return here, [found[mode] for mode in range(here.exponents.size)]
 
 
-def _name(motions: _Motions, mode: int, coordinates: Sequence[Coordinate]) -> str:
+def _names(model: Model, motions: _Motions) -> list[str]:
+    """Names of the coordinates, their numbers where the model does not name each of them."""
+    named = [coordinate.name for coordinate in getattr(model, "coordinates", ())]
+    size = motions.energies.shape[0]
+    return named if len(named) == size else [f"coordinate {number + 1}" for number in range(size)]
+
+
+def _name(motions: _Motions, mode: int, names: Sequence[str]) -> str:
     """Name the coordinates that move most in a motion; cosine and sine of one shape are named once."""
     energy = motions.energies[:, mode]
-    most = [
-        c.name for c, part in zip(coordinates, energy, strict=True) if part > (1.0 - _ALIKE) * energy.max()
-    ]
+    most = [name for name, part in zip(names, energy, strict=True) if part > (1.0 - _ALIKE) * energy.max()]
     return " and ".join(dict.fromkeys(name.removesuffix(" cos").removesuffix(" sin") for name in most))
 
 
@@ -195,9 +205,16 @@ def _crossings(
         for mode, track in enumerate(owners):
             ends = exponents[track, place : place + 2].imag / (2 * math.pi)
             for harmonic in range(1, harmonics + 1):
-                low, high = ends - harmonic * np.array([before.mesh_frequency, after.mesh_frequency])
-                if low * high <= 0.0 and np.isfinite(low * high):
-                    at = _meets(model, before, mode, harmonic, after.speed)
+                mesh = harmonic * np.array([before.mesh_frequency, after.mesh_frequency])
+                low, high = np.where(np.abs(ends - mesh) < _ON * mesh, 0.0, ends - mesh)
+                # What lies on a speed belongs to the step that begins there, the last one to the last step.
+                last = place == len(shown) - 2
+                if low == 0.0 or low * high < 0.0 or (high == 0.0 and last):
+                    at = (
+                        _meets(model, before, mode, harmonic, after.speed)
+                        if low and high
+                        else float(before.speed if low == 0.0 else after.speed)
+                    )
                     found.append((at, track, harmonic))
     return sorted(found)
 
@@ -230,7 +247,8 @@ def mode_shapes(model: Model, speed: float) -> xarray.Dataset:
     xarray.Dataset
         Along "mode", ascending by frequency: ``natural_frequency`` [Hz], ``damping_ratio`` [-], ``mode_name``. Along
         "mode" and "coordinate": ``amplitude``, the largest of each motion 1, and ``phase`` [rad], q ~ cos(ωt + phase),
-        that of the largest 0, each coordinate in its own unit; ``energy_share``, of the kinetic energy, 1 in all.
+        that of the largest 0, each coordinate in its own unit; ``energy_share``, of the kinetic energy, by
+        the symmetric root of the mass where that couples coordinates, 1 in all.
 
     Raises
     ------
@@ -255,7 +273,7 @@ def mode_shapes(model: Model, speed: float) -> xarray.Dataset:
     relative = (moved / largest).T
     both = ("mode", "coordinate")
     ratio = -motions.exponents.real / np.abs(motions.exponents)
-    modes = range(motions.exponents.size)
+    modes, names = range(motions.exponents.size), _names(model, motions)
     return xarray.Dataset(
         {
             "natural_frequency": ("mode", motions.exponents.imag / (2 * math.pi), {"units": "Hz"}),
@@ -266,8 +284,8 @@ def mode_shapes(model: Model, speed: float) -> xarray.Dataset:
         },
         {
             "mode": np.arange(1, motions.exponents.size + 1),
-            "mode_name": ("mode", [_name(motions, mode, model.coordinates) for mode in modes]),
-            "coordinate": [coordinate.name for coordinate in model.coordinates],
+            "mode_name": ("mode", [_name(motions, mode, names) for mode in modes]),
+            "coordinate": names,
         },
         {"model": repr(model), "speed": float(speed)},
     )

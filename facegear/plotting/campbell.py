@@ -20,6 +20,7 @@ def campbell(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         From :func:`facegear.maps.campbell.campbell`.
     """
+    _require_motions(data)
     figure, (ax,) = panels(1, 1, 5.0)
     speed, frequency = rpm(data["speed"].values), data["natural_frequency"].values
     damping = data["log_decrement"].values
@@ -31,7 +32,11 @@ def campbell(data: xr.Dataset) -> Figure:
     top = 1.06 * float(np.nanmax(frequency))
     for harmonic in np.unique(data["crossing_harmonic"].values).tolist():
         line = harmonic * mesh
-        ax.plot(speed, np.where(line <= top, line, np.nan), "--", color=INK, linewidth=1.0)
+        # In proportion to speed: straight up to where it leaves the frame.
+        end = min(top, line[-1])
+        ax.plot(
+            [speed[0], float(np.interp(end, line, speed))], [line[0], end], "--", color=INK, linewidth=1.0
+        )
         # One below the other, so that steep lines keep their names apart.
         height = min((1.0 - 0.07 * (harmonic - 1)) * top, line[-1])
         ax.annotate(
@@ -67,6 +72,7 @@ def mode_shapes(data: xr.Dataset) -> Figure:
     data : xarray.Dataset
         From :func:`facegear.maps.campbell.mode_shapes`.
     """
+    _require_motions(data)
     count, names = data.sizes["mode"], data["coordinate"].values.tolist()
     figure, (ax,) = panels(1, 1, 0.26 * count + 2.2)
     shares = data["energy_share"].values
@@ -79,3 +85,8 @@ def mode_shapes(data: xr.Dataset) -> Figure:
     ax.grid(False)
     figure.colorbar(mesh, ax=ax, label="part of the kinetic energy")
     return figure
+
+
+def _require_motions(data: xr.Dataset) -> None:
+    if "mode" not in data.sizes or not data.sizes["mode"]:
+        raise ValueError("data must have at least one motion that oscillates to be drawn, got none")

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from facegear.drives.assess import Assessment, Outcome, assess, gaps, told
+from facegear.drives.assess import Assessment, Outcome, _torsion, assess, gaps, told
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.tolerances import Tolerances, WorstCase
-from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant
+from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
 from facegear.floquet.labels import Combination
 from facegear.floquet.response import steady_response
 from facegear.maps.tracing import Tongue, tongues
-from facegear.support.parameters import rad_per_s
+from facegear.support.parameters import rad_per_s, rpm
 from tests.drives.test_page import HOSTILE, Reader
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
@@ -105,6 +105,31 @@ class TestVerdict:
         assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn them.")
 
 
+def test_torsion_is_looked_at_in_the_tolerance_of_speed():
+    """Its principal tongue ends at 681.8 rpm: 5 % below 685 rpm it is unstable."""
+    text = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+    text = text.replace("lowest_speed_rpm: 100", "lowest_speed_rpm: 685").replace(
+        "highest_speed_rpm: 1000", "highest_speed_rpm: 695"
+    )
+    stable = parse_drive(text)
+    wide = parse_drive(text + "\ntolerances:\n  speed_percent: 5\n")
+    found = {}
+    for name, file in (("as it is", stable), ("with its tolerance", wide)):
+        found[name] = _torsion(file, plain_contacts(file), 1)["Tregold, arm as printed"]
+    assert found["as it is"] == ()
+    assert rpm(found["with its tolerance"][-1].upper) == pytest.approx(681.8, abs=0.1)
+
+
+def test_where_nothing_is_steady_there_is_no_load():
+    nothing = np.full((3, 2), np.nan)
+    response = xr.Dataset(
+        {"force_highest": (("speed", "load"), nothing), "force_lowest": (("speed", "load"), nothing)},
+        {"speed": [60.0, 61.0, 62.0]},
+    )
+    found = Assessment(CASE_1, (outcome("Tregold", DEAD, RIGID),), {}, {}, response, "", ())
+    assert found.dynamic_load.startswith("In torsion it is unstable at all speeds looked at")
+
+
 def test_gaps_between_intervals():
     assert gaps((), (1.0, 2.0)) == ((1.0, 2.0),)
     assert gaps([(1.0, 2.0)], (1.0, 2.0)) == ()
@@ -180,7 +205,7 @@ def test_models_are_those_of_the_report_and_of_single_searches(tmp_path):
         tongues(file.torsional, file.requirements.speeds)[0].lower, rel=1e-9
     )
     assert set(found.worst) == {FOLLOWER, DEAD}
-    assert said[0].startswith("first of 4 cases in its first basis: unstable at ")
+    assert said[0].startswith("the drive as its file has it, in the basis of the file: unstable at ")
     assert len(said) == 1 + 4 + 20 + 1
     page = write_assessment(found, tmp_path).read_text(encoding="utf-8")
     assert "Depends on" in page or "under all" in page

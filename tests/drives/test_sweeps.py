@@ -91,3 +91,29 @@ def test_files(tmp_path):
     assert float(rows[5]["growth_rate_per_s"]) == pytest.approx(
         columns(found)["growth_rate_per_s"][5], rel=1e-11
     )
+
+
+def test_tolerances_are_no_numbers_of_a_model():
+    """`stiffness_percent` swept the bearing stiffness: 5 % was μ = 0.05."""
+    file = parse_drive(example_text("case_1"))
+    for key in ("stiffness_percent", "damping_percent", "speed_percent"):
+        with pytest.raises(ValueError, match=key):
+            sweep(file, key, lowest=5.0, highest=15.0, cells=2)
+
+
+def test_a_gearbox_has_the_contact_that_is_asked_for():
+    """At 678 rpm it is unstable with Tregold's contact ratio and not with that of the true sweep."""
+    file = parse_drive(example_text("gearbox_table_7_1"))
+    found = {}
+    for contact in ("tregold", "geometric"):
+        chart = sweep(
+            file,
+            "input_stiffness_Nm_per_rad",
+            lowest=1e5,
+            highest=2e5,
+            speeds_rpm=(670.0, 680.0),
+            cells=2,
+            contact=contact,
+        ).chart
+        found[contact] = chart.growth_rate.values
+    assert not np.allclose(found["tregold"], found["geometric"])

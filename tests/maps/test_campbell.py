@@ -106,6 +106,65 @@ def test_shapes_of_a_gearbox_are_those_of_its_matrices():
         np.testing.assert_allclose(found.amplitude.values[number], expected, atol=0.05)
 
 
+def test_a_meeting_at_a_speed_that_is_given_is_one():
+    """It stood there twice, once for the step on either side."""
+
+    @dataclass(frozen=True)
+    class Steady:
+        def system(self, speed):
+            return fg.PeriodicSystem(
+                np.eye(2), np.zeros((2, 2)), np.diag([1.0, 4.0]), (), 2.0 * np.pi / speed
+            )
+
+    found = fg.campbell(Steady(), [0.5, 1.0, 1.5, 2.0], harmonics=2)
+    rows = list(
+        zip(
+            found.crossing_speed.values.tolist(),
+            found.crossing_mode.values.tolist(),
+            found.crossing_harmonic.values.tolist(),
+            strict=True,
+        )
+    )
+    assert rows == [(0.5, 1, 2), (1.0, 1, 1), (1.0, 2, 2), (2.0, 2, 1)]
+    # Coordinates without names have numbers.
+    assert found.mode_name.values.tolist() == ["coordinate 1", "coordinate 2"]
+    assert fg.mode_shapes(Steady(), 1.0).coordinate.values.tolist() == ["coordinate 1", "coordinate 2"]
+
+
+def test_parts_of_the_energy_are_never_negative():
+    """A pinion's mass couples the modes of the disk."""
+    body = fg.Body(fg.Drive(26, 130, 3.175e-3), 0.03, nodal_circles=0, nodal_diameters=2)
+    found = fg.mode_shapes(fg.Transverse(body, fg.MeshLoad(1.0, 3e-6, 1.0)), fg.rad_per_s(457.0))
+    assert float(found.energy_share.min()) >= 0.0
+    np.testing.assert_allclose(found.energy_share.sum("coordinate"), 1.0, rtol=1e-12)
+
+
+def test_lines_of_the_mesh_are_drawn_over_few_speeds():
+    body = fg.Body(fg.Drive(26, 130, 3.175e-3), 0.03, nodal_circles=0, nodal_diameters=2)
+    model = fg.Transverse(body, fg.MeshLoad(1.0, 3e-6, 1.0))
+    figure = draw.campbell(fg.campbell(model, fg.rad_per_s(np.linspace(50.0, 1000.0, 8)), harmonics=1))
+    (line,) = [line for line in figure.axes[0].lines if line.get_linestyle() == "--"]
+    assert np.isfinite(line.get_xydata()).all()
+    assert np.ptp(line.get_xdata()) > 50.0
+
+
+def test_nothing_that_oscillates_is_nothing_to_draw():
+    @dataclass(frozen=True)
+    class Stiff:
+        coordinates = (Coordinate("x", "m"), Coordinate("y", "m"))
+
+        def system(self, speed):
+            return fg.PeriodicSystem(np.eye(2), 9.0 * np.eye(2), np.diag([1.0, 4.0]), (), 2.0 * np.pi / speed)
+
+    for data, picture in (
+        (fg.campbell(Stiff(), [1.0, 2.0]), draw.campbell),
+        (fg.mode_shapes(Stiff(), 1.0), draw.mode_shapes),
+    ):
+        assert data.sizes["mode"] == 0
+        with pytest.raises(ValueError, match="data must have at least one motion that oscillates"):
+            picture(data)
+
+
 def test_figures_have_the_axes_that_users_of_rotors_know():
     figure = draw.campbell(fg.campbell(Crossing(), SPEEDS))
     shown = texts(figure)
