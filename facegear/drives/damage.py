@@ -1,4 +1,7 @@
-"""What one damaged tooth of a gearbox would show: hardly anything in its exponents, sidebands in its response."""
+"""What one damaged tooth of a gearbox would show: little in its exponents but near tongues, sidebands in its response.
+
+Flanks are taken as always in contact: where a large loss makes the deformation pass zero, real teeth would part.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from facegear.floquet.multipliers import growth_rate
+from facegear.floquet.periodic import named
 from facegear.floquet.response import steady_response
 from facegear.mechanics.tooth_damage import DamagedTooth
 from facegear.support.labelled import variable
@@ -43,15 +47,19 @@ def signs_of_damage(cracked: DamagedTooth, speeds_rpm: ArrayLike, parameters: st
 
     Raises
     ------
-    ValueError
-        If there is no torque.
+    TypeError, ValueError
+        If an argument is of the wrong kind, or there is no torque.
     """
+    if not isinstance(cracked, DamagedTooth):
+        raise TypeError(f"cracked must be a DamagedTooth, got {named(cracked)}")
+    shown = finite_array("speeds_rpm", speeds_rpm)
+    if shown.ndim != 1 or (shown <= 0.0).any():
+        raise ValueError(f"speeds_rpm must be a list of speeds greater than 0 rpm, got {speeds_rpm!r}")
     if cracked.torque == 0.0:
         raise ValueError(
             "torque of the damaged gearbox must be greater than 0, or nothing vibrates, got 0 N m"
         )
-    speeds = rad_per_s(finite_array("speeds_rpm", speeds_rpm)).tolist()
-    rows = [_signs(cracked, speed) for speed in speeds]
+    rows = [_signs(cracked, speed) for speed in rad_per_s(shown).tolist()]
     growth = partial(variable, "speed_rpm", units="1/s", rtol=1e-6, atol=1e-3)
     intact, damaged, sideband = np.reshape(rows, (-1, 3)).T
     return xr.Dataset(
@@ -67,7 +75,7 @@ def signs_of_damage(cracked: DamagedTooth, speeds_rpm: ArrayLike, parameters: st
                 atol=1e-9,
             ),
         },
-        {"speed_rpm": np.asarray(speeds_rpm, dtype=float)},
+        {"speed_rpm": shown},
         {"parameters": parameters},
     )
 

@@ -14,10 +14,12 @@ from matplotlib.figure import Figure
 
 from facegear.drives.play import Motion, motion_arrays, motion_from_rest
 from facegear.floquet.models import replace_parameter, value_of
+from facegear.floquet.periodic import named
 from facegear.mechanics.backlash import Backlash
+from facegear.mechanics.gearboxes import ProportionalGearbox
 from facegear.plotting.motions import motions
 from facegear.plotting.style import FAINT, INK, VERMILION, panels, styled
-from facegear.support.parameters import rad_per_s
+from facegear.support.parameters import finite, rad_per_s
 
 _POINTS = 401
 _REFUSALS = (TypeError, ValueError, ArithmeticError)
@@ -72,11 +74,17 @@ class MotionExplorer:
 
     Raises
     ------
-    ValueError
-        If a value lies outside the range of its slider.
+    TypeError, ValueError
+        If an argument is of the wrong kind, or a value lies outside the range of its slider.
     """
 
     def __init__(self, play: Backlash, speed_rpm: float) -> None:
+        if not isinstance(play, Backlash) or not isinstance(play.torsional.gearbox, ProportionalGearbox):
+            raise TypeError(
+                "play must be a Backlash of a gearbox in multiples of its mesh stiffness, a ProportionalGearbox, got "
+                f"{named(play)}"
+            )
+        speed_rpm = finite("speed_rpm", speed_rpm, "rpm")
         self._play = play
         damping = value_of(play.torsional, "mesh_damping")
         self.controls = {

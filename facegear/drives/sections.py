@@ -267,8 +267,9 @@ def _damage(found: Findings) -> list[Part]:
     )
     words = Paragraph(
         "One tooth of the face gear is damaged (gearbox.damaged_tooth_percent), under the torque of one pinion's "
-        "power. Growth rates hardly tell; the response of a stable gearbox does, by lines at multiples of the "
-        "revolution beside those of the mesh. No sideband stands where either gearbox is unstable."
+        "power. Flanks are taken as always in contact here, whatever play the file gives. Away from tongues growth "
+        "rates hardly tell; the response of a stable gearbox does, by lines at multiples of the revolution beside "
+        "those of the mesh. No sideband stands where either gearbox is unstable."
     )
     headings = (
         "speed [rpm]",

@@ -48,6 +48,27 @@ def test_without_a_torque_nothing_vibrates():
         signs_of_damage(replace(CRACKED, torque=0.0), [500.0], "")
 
 
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (
+            lambda: signs_of_damage(CRACKED.torsional, [500.0], ""),
+            TypeError,
+            "cracked must be a DamagedTooth",
+        ),
+        (lambda: signs_of_damage(CRACKED, 500.0, ""), ValueError, "speeds_rpm must be a list of speeds"),
+        (
+            lambda: signs_of_damage(CRACKED, [-100.0], ""),
+            ValueError,
+            "speeds_rpm must be a list .* greater than 0",
+        ),
+    ],
+)
+def test_bad_input_names_the_parameter(call, error, message):
+    with pytest.raises(error, match=message):
+        call()
+
+
 def test_the_key_of_a_file_and_its_place_in_the_report():
     text = GEARBOX.replace("gearbox:\n", "gearbox:\n  damaged_tooth_percent: 20\n")
     file = parse_drive(text)

@@ -10,6 +10,7 @@ from facegear.drives import motion_explorer
 from facegear.drives.play import Motion
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import FIGURES
+from facegear.mechanics.torsional import Torsional
 
 PLAY = Backlash(FIGURES["7.12a"].model(), torque=800.0, gap=1e-4)
 
@@ -47,6 +48,16 @@ def test_a_start_beyond_a_slider_is_refused():
         ValueError, match=r"backlash \[µm\] must lie between 1 and 500 for its slider, got 900"
     ):
         motion_explorer.MotionExplorer(replace(PLAY, gap=9e-4), 640.0)
+
+
+@pytest.mark.parametrize(
+    "wrong", [None, PLAY.torsional, replace(PLAY, torsional=Torsional(PLAY.torsional.gearbox.in_si))]
+)
+def test_what_is_no_gearbox_in_multiples_is_refused(wrong):
+    with pytest.raises(
+        TypeError, match="play must be a Backlash of a gearbox in multiples of its mesh stiffness"
+    ):
+        motion_explorer.MotionExplorer(wrong, 640.0)
 
 
 def test_motions_that_do_not_repeat_are_drawn_where_periods_begin_and_growing_ones_not():
