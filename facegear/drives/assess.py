@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from operator import attrgetter
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -18,11 +17,12 @@ import xarray as xr
 
 from facegear.design.changes import effects_of_changes
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share, with_basis
-from facegear.drives.contacts import torsional_under
+from facegear.drives.contacts import massless, torsional_under
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import best_change
+from facegear.drives.intervals import Intervals, gaps, in_rpm, united
 from facegear.drives.report import describe
-from facegear.drives.tolerances import WorstCase, united, worst_case
+from facegear.drives.tolerances import WorstCase, worst_case
 from facegear.drives.variants import (
     Variant,
     other_teeth,
@@ -40,8 +40,6 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.transverse import FaceGears
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import number_of_workers, rpm
-
-Intervals = tuple[tuple[float, float], ...]
 
 SAFE, UNSTABLE, DEPENDS = "safe under all", "unstable under all", "depends"
 """What an assessment may come to."""
@@ -194,8 +192,8 @@ class Assessment:
                 f" Of {len(self.torsion)} models of torsion {still} {'is' if still == 1 else 'are'} stable"
             )
             words += " in the range with its tolerance." if self.file.tolerances.speed else "."
-        words += f" Stable under all of them: {told(self.always_stable)}."
-        words += f" Unstable under all of them: {told(self.always_unstable)}."
+        words += f" Stable under all of them: {_told(self.always_stable)}."
+        words += f" Unstable under all of them: {_told(self.always_unstable)}."
         if self.verdict != SAFE:
             words += f" Worst: {self.mechanism}."
         open_cases = sum(not outcome.settled for outcome in self.outcomes)
@@ -234,7 +232,7 @@ class Assessment:
                 words = "stable for all values"
             elif case.swept:
                 words = (
-                    f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"
+                    f"unstable for some values at {_told(case.swept)}, {100 * case.share:.3g} % of the speeds"
                 )
             else:
                 speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
@@ -370,8 +368,9 @@ def assess(
     outcomes: list[Outcome] = []
     refused: list[str] = []
     others: list[Variant] = []
-    work = [(case.model, speeds, tolerance, most_steps) for case in cases]
-    for case, found in zip(cases, each_in_processes(_settled, work, jobs), strict=True):
+    settle = partial(settled_tongues, tolerance=tolerance, most_steps=most_steps)
+    work = [(case.model, speeds) for case in cases]
+    for case, found in zip(cases, each_in_processes(settle, work, jobs), strict=True):
         outcomes.append(Outcome(replace(case, model=found.model), found.tongues, found.settled))
         # Where two bases agree for the file's teeth, the smaller is where the others begin.
         start = found.steps[-2:][0]
@@ -415,15 +414,9 @@ class _Tried(NamedTuple):
     reason: str
 
 
-def _settled(
-    model: FaceGears, speeds: tuple[float, float], tolerance: float, most_steps: int
-) -> SettledTongues:
-    return settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps)
-
-
 def _tried(model: FaceGears, speeds: tuple[float, float], tolerance: float, most_steps: int) -> _Tried:
     try:
-        return _Tried(_settled(model, speeds, tolerance, most_steps), "")
+        return _Tried(settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps), "")
     except (ArithmeticError, ValueError) as error:
         return _Tried(None, str(error))
 
@@ -432,7 +425,7 @@ def _torsion(file: DriveFile, contacts: Mapping[str, Contact], jobs: int) -> dic
     """Tongues in torsion under each contact and each arm of the mesh force, the file's own first."""
     if file.torsional is None:
         return {}
-    own = attrgetter("torsional.arm" if hasattr(file.torsional, "torsional") else "arm")(file.torsional)
+    own = massless(file.torsional).arm
     models = {
         f"{name}, {_ARMS[arm]}": torsional_under(file.torsional, contact, file.drive, arm)
         for arm in sorted(_ARMS, key=lambda arm: arm != own)
@@ -480,31 +473,8 @@ def _intervals(found: Sequence[Tongue]) -> Intervals:
     return tuple((tongue.lower, tongue.upper) for tongue in found)
 
 
-def gaps(intervals: Sequence[tuple[float, float]], speeds: tuple[float, float]) -> Intervals:
-    """Return what a range has besides intervals that are apart and ascend.
-
-    Examples
-    --------
-    >>> gaps([(2.0, 3.0), (4.0, 5.0)], (1.0, 5.0))
-    ((1.0, 2.0), (3.0, 4.0))
-    """
-    low, high = speeds
-    edges = [low, *(edge for interval in intervals for edge in interval), high]
-    pairs = zip(edges[::2], edges[1::2], strict=True)
-    found = ((max(start, low), min(stop, high)) for start, stop in pairs)
-    return tuple((start, stop) for start, stop in found if stop > start)
-
-
-def told(intervals: Intervals) -> str:
-    """Intervals of speed [rad/s] in words, in rpm: the widest by their ends, how many there are besides."""
-    if not intervals:
-        return "no speed"
-    widest = sorted(sorted(intervals, key=lambda ends: ends[0] - ends[1])[:_NAMED])
-    named = ", ".join(f"{rpm(start):.4g} to {rpm(stop):.4g}" for start, stop in widest)
-    rest = len(intervals) - len(widest)
-    return f"{named} rpm" + (
-        f" and {rest} narrower {'interval' if rest == 1 else 'intervals'}" if rest else ""
-    )
+def _told(intervals: Intervals) -> str:
+    return in_rpm(intervals, _NAMED) if intervals else "no speed"
 
 
 def _listed(words: Sequence[str]) -> str:

@@ -87,6 +87,11 @@ def in_torsion(contact: Contact, drive: Drive) -> Contact:
     return replace(contact, sharing="each", rate="total")
 
 
+def massless(torsional: Any) -> Any:
+    """Return the gearbox with massless shafts of a torsional model: shafts with mass stand around one."""
+    return getattr(torsional, "torsional", torsional)
+
+
 def torsional_under(torsional: Any, contact: Contact, drive: Drive, arm: str | None = None) -> Any:
     """Return a torsional model of a drive file under another contact, and with another arm of the mesh force if given.
 
@@ -98,7 +103,6 @@ def torsional_under(torsional: Any, contact: Contact, drive: Drive, arm: str | N
     drive : Drive
     arm : {"printed", "conjugate"}, optional
     """
-    # Shafts with mass stand around a gearbox with massless ones.
-    inside = ("torsional",) if hasattr(torsional, "torsional") else ()
+    inside = () if massless(torsional) is torsional else ("torsional",)
     moved = replace_at(torsional, (*inside, "contact"), in_torsion(contact, drive))
     return moved if arm is None else replace_at(moved, (*inside, "arm"), arm)

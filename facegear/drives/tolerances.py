@@ -14,6 +14,7 @@ from itertools import combinations
 
 import numpy as np
 
+from facegear.drives.intervals import united
 from facegear.floquet.models import Coordinate, parameter_names, replace_parameter, value_of
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.closing import ClosingValue, growth_peaks
@@ -213,20 +214,3 @@ def _between(first: Sequence[Tongue], second: Sequence[Tongue]) -> list[tuple[fl
                 (min(a.lower, b.lower), max(a.upper, b.upper)) for a, b in zip(here, there, strict=True)
             ]
     return swept
-
-
-def united(intervals: Sequence[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Unite intervals that overlap or touch; ascending.
-
-    Examples
-    --------
-    >>> united([(3.0, 4.0), (1.0, 2.0), (1.5, 3.0)])
-    ((1.0, 4.0),)
-    """
-    found: list[tuple[float, float]] = []
-    for start, stop in sorted(intervals):
-        if found and start <= found[-1][1]:
-            found[-1] = (found[-1][0], max(stop, found[-1][1]))
-        else:
-            found.append((start, stop))
-    return tuple(found)

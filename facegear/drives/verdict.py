@@ -18,6 +18,7 @@ from facegear.drives.basis import SettledTongues, settled_tongues, unstable_shar
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID
 from facegear.drives.forces import in_words, pressed
+from facegear.drives.intervals import in_rpm
 from facegear.floquet.modes import mean_growth_rate
 from facegear.maps.parallel import each_in_processes
 from facegear.maps.tracing import Tongue
@@ -241,13 +242,10 @@ def _counted(number: int, what: str) -> str:
 def _speeds(found: Sequence[Tongue], speeds: tuple[float, float]) -> str:
     if not found:
         return "stable at all speeds"
-    widest = sorted(sorted(found, key=lambda tongue: -tongue.width)[:_NAMED], key=lambda tongue: tongue.lower)
-    named = ", ".join(f"{rpm(tongue.lower):.4g} to {rpm(tongue.upper):.4g}" for tongue in widest)
-    rest = len(found) - len(widest)
-    others = f" and {rest} narrower {'interval' if rest == 1 else 'intervals'}" if rest else ""
+    named = in_rpm([(tongue.lower, tongue.upper) for tongue in found], _NAMED)
     growth = max(tongue.growth_rate for tongue in found)
     share = 100 * unstable_share(found, speeds)
-    return f"unstable at {share:.3g} % of the speeds ({named} rpm{others}; growth up to {growth:.3g} 1/s)"
+    return f"unstable at {share:.3g} % of the speeds ({named}; growth up to {growth:.3g} 1/s)"
 
 
 def _resonances(found: Sequence[Tongue]) -> str:

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from facegear.drives.assess import Assessment, Outcome, _torsion, assess, gaps, told
+from facegear.drives.assess import Assessment, Outcome, _told, _torsion, assess
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
+from facegear.drives.intervals import gaps
 from facegear.drives.tolerances import Tolerances, WorstCase
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
@@ -57,7 +58,7 @@ class TestVerdict:
         )
         assert found.verdict == "unstable under all"
         assert "Unstable under all of them: 250 to 300 rpm." in found.headline
-        assert told(found.always_stable) == "100 to 200, 400 to 1000 rpm"
+        assert _told(found.always_stable) == "100 to 200, 400 to 1000 rpm"
         assert (
             "Worst: parametric resonance (1+8)/1 at 250 rpm, growing by 2 1/s (Tregold; force keeps"
             in found.headline
@@ -81,7 +82,7 @@ class TestVerdict:
         torsion = {"Tregold, arm as printed": (tongue(600, 620, 90.0),)}
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
         assert found.verdict == "unstable under all"
-        assert told(found.always_unstable) == "600 to 620 rpm"
+        assert _told(found.always_unstable) == "600 to 620 rpm"
         assert "(torsion; Tregold, arm as printed)" in found.headline
         torsion["true sweep, arm as printed"] = ()
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
@@ -98,7 +99,7 @@ class TestVerdict:
             "With stiffness ±10 %, speed ±2 %, force keeps its direction: unstable for some values at 200 to 290 rpm, "
             "10 % of the speeds.",
         )
-        assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+        assert _told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
 
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
@@ -134,7 +135,7 @@ def test_gaps_between_intervals():
     assert gaps((), (1.0, 2.0)) == ((1.0, 2.0),)
     assert gaps([(1.0, 2.0)], (1.0, 2.0)) == ()
     assert gaps([(0.5, 1.5)], (1.0, 2.0)) == ((1.5, 2.0),)
-    assert told(tuple((float(i), i + 0.1 * i) for i in range(1, 7))).endswith("rpm and 2 narrower intervals")
+    assert _told(tuple((float(i), i + 0.1 * i) for i in range(1, 7))).endswith("rpm and 2 narrower intervals")
 
 
 def test_the_page_shows_hostile_names_as_text(tmp_path):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
-from facegear.drives.tolerances import Toleranced, Tolerances, united, worst_case
+from facegear.drives.intervals import united
+from facegear.drives.tolerances import Toleranced, Tolerances, worst_case
 from facegear.drives.verdict import driven
 from facegear.maps.tracing import tongues
 from facegear.support.parameters import rad_per_s

@@ -1,0 +1,58 @@
+"""Intervals of speed: united, what lies between them, and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from facegear.support.parameters import rpm
+
+Intervals = tuple[tuple[float, float], ...]
+"""Lower and upper ends."""
+
+
+def united(intervals: Sequence[tuple[float, float]]) -> Intervals:
+    """Unite intervals that overlap or touch; ascending.
+
+    Examples
+    --------
+    >>> united([(3.0, 4.0), (1.0, 2.0), (1.5, 3.0)])
+    ((1.0, 4.0),)
+    """
+    found: list[tuple[float, float]] = []
+    for start, stop in sorted(intervals):
+        if found and start <= found[-1][1]:
+            found[-1] = (found[-1][0], max(stop, found[-1][1]))
+        else:
+            found.append((start, stop))
+    return tuple(found)
+
+
+def gaps(intervals: Sequence[tuple[float, float]], speeds: tuple[float, float]) -> Intervals:
+    """Return what a range has besides intervals that are apart and ascend.
+
+    Examples
+    --------
+    >>> gaps([(2.0, 3.0), (4.0, 5.0)], (1.0, 5.0))
+    ((1.0, 2.0), (3.0, 4.0))
+    """
+    low, high = speeds
+    edges = [low, *(edge for interval in intervals for edge in interval), high]
+    pairs = zip(edges[::2], edges[1::2], strict=True)
+    found = ((max(start, low), min(stop, high)) for start, stop in pairs)
+    return tuple((start, stop) for start, stop in found if stop > start)
+
+
+def in_rpm(intervals: Sequence[tuple[float, float]], most: int) -> str:
+    """Intervals of speed [rad/s] in rpm: the widest by their ends, at most so many, and how many there are besides.
+
+    Examples
+    --------
+    >>> from facegear.support.parameters import rad_per_s
+    >>> in_rpm([(rad_per_s(100.0), rad_per_s(200.0)), (rad_per_s(300.0), rad_per_s(310.0))], 1)
+    '100 to 200 rpm and 1 narrower interval'
+    """
+    widest = sorted(sorted(intervals, key=lambda ends: ends[0] - ends[1])[:most])
+    named = ", ".join(f"{rpm(start):.4g} to {rpm(stop):.4g}" for start, stop in widest)
+    rest = len(intervals) - len(widest)
+    others = f" and {rest} narrower {'interval' if rest == 1 else 'intervals'}" if rest else ""
+    return f"{named} rpm{others}"
