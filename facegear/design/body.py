@@ -127,6 +127,11 @@ class Requirements:
             speeds=ascending("speeds", self.speeds, "rad/s"),
         )
 
+    @property
+    def pinion_torque(self) -> float:
+        """Torque of a pinion P/Ω1 at its power [N m]."""
+        return self.power / self.pinion_speed
+
     def root_stresses(self, body: Body) -> tuple[float, float]:
         """Bending stress at the root of the pinion's tooth (4-20, 4-21), and σ_Y/SF that is allowed (4-22) [Pa]."""
         stress = root_stress(body.drive, self.power, self.pinion_speed)

@@ -243,8 +243,7 @@ class Assessment:
     @property
     def static_force(self) -> float:
         """Whole force between the teeth of a mesh at rest [N]."""
-        duty = self.file.requirements
-        return duty.power / duty.pinion_speed / self.file.drive.base_radius
+        return self.file.requirements.pinion_torque / self.file.drive.base_radius
 
     @property
     def dynamic_load(self) -> str:
@@ -447,7 +446,7 @@ def _response(file: DriveFile, jobs: int, refused: list[str]) -> xr.Dataset | No
     if file.torsional is None:
         refused.append("dynamic load of the teeth: the file has no section gearbox")
         return None
-    torque = file.requirements.power / file.requirements.pinion_speed * file.drive.gear_ratio
+    torque = file.requirements.pinion_torque * file.drive.gear_ratio
     at_load = np.zeros(len(file.torsional.coordinates))
     at_load[2] = -torque
     loaded = Excited(file.torsional, force=PiecewiseChebyshev.constant(at_load))

@@ -141,13 +141,7 @@ def _add_report(commands: Any) -> None:
   facegear report my_drive.yaml --output results
   facegear report my_drive.yaml --most-steps 1 --cells 20     a first look, in a fraction of the time""",
     )
-    command.add_argument("file", metavar="FILE", help="drive file (YAML)")
-    command.add_argument(
-        "--output",
-        metavar="FOLDER",
-        type=Path,
-        help="where it goes; FILE_results beside the file if left out",
-    )
+    _add_file_and_output(command, "results")
     command.add_argument(
         "--cells", type=_whole, default=60, help="speeds and values of the maps (%(default)s)"
     )
@@ -173,13 +167,7 @@ def _add_assess(commands: Any) -> None:
 
 A first verdict comes within seconds, the page in some minutes for one pinion. Tolerances are a section of the file.""",
     )
-    command.add_argument("file", metavar="FILE", help="drive file (YAML)")
-    command.add_argument(
-        "--output",
-        metavar="FOLDER",
-        type=Path,
-        help="where it goes; FILE_assessment beside the file if left out",
-    )
+    _add_file_and_output(command, "assessment")
     _add_jobs(command)
 
 
@@ -324,6 +312,16 @@ def _help_of(key: Key) -> str:
 
 def _listed(value: Any) -> str:
     return " ".join(f"{entry:g}" for entry in value) or "none" if isinstance(value, tuple) else str(value)
+
+
+def _add_file_and_output(command: argparse.ArgumentParser, kind: str) -> None:
+    command.add_argument("file", metavar="FILE", help="drive file (YAML)")
+    command.add_argument(
+        "--output",
+        metavar="FOLDER",
+        type=Path,
+        help=f"where it goes; FILE_{kind} beside the file if left out",
+    )
 
 
 def _add_jobs(command: argparse.ArgumentParser) -> None:

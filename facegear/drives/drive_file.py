@@ -416,7 +416,7 @@ def _built(found: _Found) -> DriveFile:
         torsional = _following(
             found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive), material)
         )
-        torque = requirements.power / requirements.pinion_speed * drive.gear_ratio
+        torque = requirements.pinion_torque * drive.gear_ratio
         play = _by_model(found, "gearbox", lambda: _play(gearbox, torsional, torque))
         cracked = _by_model(found, "gearbox", lambda: _cracked(gearbox, torsional, torque))
     force_at = values["operation"]["force_at"]

@@ -53,10 +53,10 @@ def plain_contacts(file: DriveFile) -> dict[str, Contact]:
 
     A contact under load stands there under a half and a quarter of the torque as well.
     """
-    duty, drive = file.requirements, file.drive
+    drive = file.drive
     stiffness, _ = _teeth(file)
     possible = transverse_contacts(
-        drive, duty.power / duty.pinion_speed, file.transverse.gear.body.material, stiffness
+        drive, file.requirements.pinion_torque, file.transverse.gear.body.material, stiffness
     )
     named = {NAMES[name]: contact for name, contact in possible.items()}
     found = {name: named[name] for name in file.contacts}
