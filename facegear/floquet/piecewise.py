@@ -446,6 +446,15 @@ def merge_breakpoints(parts: Sequence[FloatArray]) -> FloatArray:
     return points[np.diff(points, prepend=-1.0) > SAME_INSTANT]
 
 
+def same_function(one: PiecewiseChebyshev | None, other: PiecewiseChebyshev | None) -> bool:
+    """Whether two functions, or none of them, are the same to the last digit."""
+    if one is None or other is None or one is other:
+        return one is other
+    return np.array_equal(one.breakpoints, other.breakpoints) and np.array_equal(
+        one.coefficients, other.coefficients
+    )
+
+
 def _check_breakpoints(breakpoints: FloatArray) -> None:
     if breakpoints.size == 0 or breakpoints[0] < 0.0 or breakpoints[-1] >= 1.0:
         raise ValueError(f"breakpoints must lie inside [0, 1), at least one; got {breakpoints.tolist()}")
