@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
 from facegear.support.types import FloatArray
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 # Seconds of work from which on processes are started, which by itself takes a few.
 _WORTH_PROCESSES = 8.0
@@ -147,11 +150,17 @@ def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]
 
 def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
-    from threadpoolctl import threadpool_limits
-
     _begin_as_worker()
-    with threadpool_limits(limits=1):
+    with _pools().limit(limits=1):
         return function(*arguments)
+
+
+@cache
+def _pools() -> ThreadpoolController:
+    """Find the libraries of this process that have threads of their own, which takes as long as a small map."""
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 @cache
@@ -187,7 +196,6 @@ def _in_parallel(
     """Run tasks where joblib says; few and small ones are not worth another process."""
     from joblib import Parallel, delayed, effective_n_jobs
     from joblib.parallel import get_active_backend
-    from threadpoolctl import threadpool_limits
 
     backend = get_active_backend(prefer=prefer)[0]
     together = backend.supports_return_generator
@@ -196,16 +204,17 @@ def _in_parallel(
         started = time.perf_counter()
         yield _on_one_thread(_run, *tasks[0])
         tasks = tasks[1:]
+        if not tasks:
+            return
         if len(tasks) * (time.perf_counter() - started) < _WORTH_PROCESSES:
-            with threadpool_limits(limits=1):
+            with _pools().limit(limits=1):
                 yield from (_run(*task) for task in tasks)
             return
     if together:
-        # Threads share one limit: set before the first, or each would restore what another has set, and looking for the
-        # libraries that it holds for takes as long as a small task.
+        # Threads share one limit: set before the first, or each would restore what another has set.
         here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
         work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
-        with threadpool_limits(limits=1):
+        with _pools().limit(limits=1):
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
             )
