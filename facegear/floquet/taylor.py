@@ -39,8 +39,8 @@ _POINTS, _RESOLVED, _NOTHING = 17, 1e-13, 1e-15
 _CANCELLED = 5.0
 # Terms before a step is halved, and how often that is done.
 _MOST_TERMS, _MOST_HALVINGS = 48, 4
-# Steps of a period beyond which exponentials, which are squared, take less time.
-_MOST_STEPS = 1000
+# Integral of the norm over a period beyond which exponentials, which are squared, take less time.
+_MOST_EXPONENT = 6000.0
 # Cells go together if their norms are at least this part of the largest among them, or if they are so few.
 _TOGETHER, _LANES = 0.8, 32
 # Cells fewer than these are not worth another library.
@@ -149,10 +149,11 @@ class Taylor:
         found = np.empty((periods.size, 2 * family.size, 2 * family.size))
         numbers = np.repeat(np.arange(len(family.systems)), turns.size)
         compiled = _compiled() if numbers.size >= _FEWEST else None
+        most = int(_MOST_EXPONENT / self.angle)
         for cells in _groups(norms.ravel()):
             fewest = float(norms.ravel()[cells].max()) / self.angle
             for _ in range(_MOST_HALVINGS):
-                steps = _steps(family, left, back, fewest)
+                steps = _steps(family, left, back, fewest, most)
                 found[cells] = _matrices(
                     members, steps, numbers[cells], periods[cells], self.tolerance, compiled
                 )
@@ -215,15 +216,15 @@ def _rule(count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     return (points + 1.0) / 2.0, np.asarray(to_series, dtype=float), to_powers
 
 
-def _steps(family: Family, left: FloatArray, back: FloatArray, fewest: float) -> Steps:
-    """Lay polynomials through the coefficients on the steps of a period, at least so many."""
-    loads, count = family.systems[0].loads, max(1, int(np.ceil(min(fewest, 2.0 * _MOST_STEPS))))
+def _steps(family: Family, left: FloatArray, back: FloatArray, fewest: float, most: int) -> Steps:
+    """Lay polynomials through the coefficients on the steps of a period, so many at least and at most."""
+    loads, count = family.systems[0].loads, max(1, int(np.ceil(min(fewest, 2.0 * most))))
     ratio = float(family.scale[0, 0] / family.scale[family.size, family.size])
     # Polynomials of so low a degree are met by as many points.
     degrees = (2 * x.shape.degree + (0 if x.weight is None else x.weight.degree) for x in loads)
     exact = max(degrees, default=0) + 1
     points, to_series, to_powers = _rule(min(exact, _POINTS))
-    while count <= _MOST_STEPS:
+    while count <= most:
         edges = aligned_edges(family.breakpoints, count)
         lengths = np.diff(edges)
         x = edges[:-1, np.newaxis] + lengths[:, np.newaxis] * points
@@ -247,9 +248,7 @@ def _steps(family: Family, left: FloatArray, back: FloatArray, fewest: float) ->
             dyads, slopes = np.moveaxis(powers, (1, -1), (0, 2))
             return Steps(lengths, np.ascontiguousarray(dyads), np.ascontiguousarray(slopes))
         count *= 2
-    raise UnsuitableSystemError(
-        f"coefficients or dampers ask for more than {_MOST_STEPS} steps of the period"
-    )
+    raise UnsuitableSystemError(f"coefficients or dampers ask for more than {most} steps of the period")
 
 
 def _matrices(

@@ -75,6 +75,11 @@ def test_strong_dampers_ask_for_shorter_steps():
     stiff = replace(system, damping=100.0 * CHAIN)
     found, exact = (transition_matrices([stiff], method) for method in (Taylor(), AdaptiveMagnus(1e-12)))
     assert np.abs(found - exact).max() < 1e-10
+    # What a method takes its refinement takes too.
+    stiffest = replace(system, damping=5400.0 / Family([stiff]).exponent_norm * stiff.damping)
+    assert 4800.0 < Family([stiffest]).exponent_norm < 5800.0
+    one, other = (transition_matrices([stiffest], method) for method in (Taylor(), Taylor().refined()))
+    assert np.abs(one - other).max() < 1e-10
     with pytest.raises(UnsuitableSystemError, match="more than 1000 steps"):
         transition_matrices([replace(stiff, damping=1e4 * CHAIN)], Taylor())
 
