@@ -18,13 +18,15 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import tongues
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.gearboxes import FIGURES
+from facegear.mechanics.paths import loaded_contact, point_contact
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
 
 LOAD = MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0)
-GROWTH_RATES = 50
+GROWTH_RATES, PATHS = 50, 50
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,10 @@ def growth_rates(model: Transverse) -> None:
 def measure() -> list[Call]:
     model, gearbox = case_1(), FIGURES["7.13b"]
     speeds = partial(np.linspace, 10.0, 1000.0)
+    drive = Drive(26, 130, 3.175e-3, shaper_teeth=27)
+    under_load = Transverse(
+        Body(drive, thickness_ratio=0.03), LOAD, contact=Contact(path=loaded_contact(100.0))
+    )
     maps = (
         (
             "Case I, bearing stiffness, 200 × 200",
@@ -83,6 +89,20 @@ def measure() -> list[Call]:
             gearbox.parameter,
             np.geomspace(gearbox.lowest, gearbox.highest, 60),
         ),
+        (
+            "gearbox of Fig. 7.13(b), shaft damping, 150 × 150",
+            gearbox.model(),
+            rad_per_s(np.linspace(gearbox.lowest_rpm, 1000.0, 150)),
+            gearbox.parameter,
+            np.geomspace(gearbox.lowest, gearbox.highest, 150),
+        ),
+        (
+            "Case I under load, torque, 60 × 100",
+            under_load,
+            rad_per_s(np.linspace(100.0, 1000.0, 100)),
+            "torque",
+            np.geomspace(4.0, 1000.0, 60),
+        ),
     )
     calls = []
     for name, chosen, over, parameter, values in maps:
@@ -90,6 +110,15 @@ def measure() -> list[Call]:
         for cores in (1, 2):
             run = partial(stability_map, chosen, over, parameter, values, jobs=cores, progress=False)
             calls.append(timed(f"map of {name}", cores, run))
+    modules = np.linspace(3e-3, 4e-3, PATHS).tolist()
+    calls.append(
+        timed(
+            "path of contact at a point, its drive included",
+            1,
+            lambda: [point_contact(Drive(26, 130, m, shaper_teeth=27)) for m in modules],
+            PATHS,
+        )
+    )
     low, high = rad_per_s(np.array([10.0, 1000.0])).tolist()
     calls.append(
         timed(
