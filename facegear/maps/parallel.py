@@ -24,6 +24,7 @@ import numpy as np
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 # Seconds of work from which on processes are started, which by itself takes a few.
@@ -147,10 +148,8 @@ def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]
 
 def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
-    from threadpoolctl import threadpool_limits
-
     _begin_as_worker()
-    with threadpool_limits(limits=1):
+    with one_thread():
         return function(*arguments)
 
 
@@ -187,7 +186,6 @@ def _in_parallel(
     """Run tasks where joblib says; few and small ones are not worth another process."""
     from joblib import Parallel, delayed, effective_n_jobs
     from joblib.parallel import get_active_backend
-    from threadpoolctl import threadpool_limits
 
     backend = get_active_backend(prefer=prefer)[0]
     together = backend.supports_return_generator
@@ -197,7 +195,7 @@ def _in_parallel(
         yield _on_one_thread(_run, *tasks[0])
         tasks = tasks[1:]
         if len(tasks) * (time.perf_counter() - started) < _WORTH_PROCESSES:
-            with threadpool_limits(limits=1):
+            with one_thread():
                 yield from (_run(*task) for task in tasks)
             return
     if together:
@@ -205,7 +203,7 @@ def _in_parallel(
         # libraries that it holds for takes as long as a small task.
         here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
         work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
-        with threadpool_limits(limits=1):
+        with one_thread():
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
             )
