@@ -7,6 +7,8 @@ fraction x = t / T0 of the period, and each smooth piece has its own Chebyshev s
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -30,6 +32,8 @@ SAME_INSTANT = 1e-12
 _FEWEST = 9
 # Evenly spaced places in [-1, 1], none a Chebyshev point, at which a series must meet its function in the end.
 _CHECKED = np.arange(-31.0, 32.0, 2.0) / 32.0
+# Values at no more fractions than this are remembered for a while.
+_REMEMBERED = 1024
 # By so much it may miss it there, in units of the size that its last coefficients may have.
 _LEEWAY = 100.0
 
@@ -235,6 +239,14 @@ class PiecewiseChebyshev:
         """
         one_of("side", side, ("right", "left"))
         asked = finite_array("fraction", fraction)
+        if asked.ndim == 0:
+            return self._at(float(asked), side)
+        if asked.size > _REMEMBERED:
+            return self._along(asked, side)
+        return _evaluated(self, asked.tobytes(), side).reshape(*asked.shape, self.components).copy()
+
+    def _along(self, asked: FloatArray, side: Side) -> FloatArray:
+        """Values at many fractions."""
         wrapped = wrap(asked.ravel())
         nudge = SAME_INSTANT if side == "right" else -SAME_INSTANT
         # Before the first breakpoint one is still on the last piece of the period before, number -1.
@@ -242,11 +254,27 @@ class PiecewiseChebyshev:
         offset = wrapped - self.breakpoints[piece] + (piece < 0)
         basis = _chebyshev_basis(2.0 * offset / self.lengths[piece] - 1.0, self.degree)
         values = np.empty((wrapped.size, self.components))
-        order = np.argsort(piece, kind="stable")
-        for chosen in np.split(order, np.flatnonzero(np.diff(piece[order])) + 1):
-            if chosen.size:
-                values[chosen] = basis[chosen] @ self.coefficients[piece[chosen[0]]]
+        for number in range(-1, self.breakpoints.size):
+            chosen = piece == number
+            if chosen.any():
+                values[chosen] = basis[chosen] @ self.coefficients[number]
         return values.reshape(*asked.shape, self.components)
+
+    def _at(self, fraction: float, side: Side) -> FloatArray:
+        """Value at one fraction: in plain numbers, for integrators ask thousands of times."""
+        starts, lengths, degrees = self._plain
+        x = fraction % 1.0
+        if x > 1.0 - SAME_INSTANT:
+            x = 0.0
+        piece = bisect_right(starts, x + (SAME_INSTANT if side == "right" else -SAME_INSTANT)) - 1
+        offset = x - starts[piece] + (piece < 0)
+        angle = math.acos(min(1.0, max(-1.0, 2.0 * offset / lengths[piece] - 1.0)))
+        return np.asarray(np.cos(angle * degrees) @ self.coefficients[piece], dtype=float)
+
+    @cached_property
+    def _plain(self) -> tuple[list[float], list[float], FloatArray]:
+        """Breakpoints, lengths of the pieces, and 0 ... degree."""
+        return self.breakpoints.tolist(), self.lengths.tolist(), np.arange(self.degree + 1.0)
 
     def derivative(self, order: int = 1) -> PiecewiseChebyshev:
         """Exact derivative with respect to the fraction of the period, piece by piece (jumps left out)."""
@@ -306,6 +334,12 @@ class PiecewiseChebyshev:
         right: FloatArray = np.einsum("d,pdn->pn", signs, self.coefficients)
         left: FloatArray = np.roll(self.coefficients.sum(axis=1), 1, axis=0)
         return right - left
+
+
+@lru_cache(maxsize=256)
+def _evaluated(function: PiecewiseChebyshev, fractions: bytes, side: Side) -> FloatArray:
+    """Values at fractions: the systems of a family, and those of one tongue, are asked for at the same ones."""
+    return function._along(np.frombuffer(fractions), side)
 
 
 @dataclass(frozen=True, eq=False)
