@@ -238,9 +238,9 @@ class PiecewiseChebyshev:
         array, shape (..., components)
         """
         one_of("side", side, ("right", "left"))
+        if isinstance(fraction, float) and math.isfinite(fraction):
+            return self._at(float(fraction), side)
         asked = finite_array("fraction", fraction)
-        if asked.ndim == 0:
-            return self._at(float(asked), side)
         if asked.size > _REMEMBERED:
             return self._along(asked, side)
         return _evaluated(self, asked.tobytes(), side).reshape(*asked.shape, self.components).copy()
