@@ -238,8 +238,9 @@ class PiecewiseChebyshev:
         array, shape (..., components)
         """
         one_of("side", side, ("right", "left"))
-        if isinstance(fraction, float) and math.isfinite(fraction):
-            return self._at(float(fraction), side)
+        one: object = fraction
+        if isinstance(one, float) and math.isfinite(one):
+            return self._at(float(one), side)
         asked = finite_array("fraction", fraction)
         if asked.size > _REMEMBERED:
             return self._along(asked, side)
