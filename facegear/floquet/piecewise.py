@@ -14,6 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from inspect import signature
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -32,6 +33,8 @@ SAME_INSTANT = 1e-12
 _FEWEST = 9
 # Evenly spaced places in [-1, 1], none a Chebyshev point, at which a series must meet its function in the end.
 _CHECKED = np.arange(-31.0, 32.0, 2.0) / 32.0
+# Places from which on a recurrence over degrees is quicker than a cosine for each.
+_MANY = 50
 # Values at no more fractions than this are remembered for a while.
 _REMEMBERED = 1024
 # By so much it may miss it there, in units of the size that its last coefficients may have.
@@ -48,6 +51,21 @@ def _coefficients(values: FloatArray) -> FloatArray:
 def _chebyshev_basis(x: FloatArray, degree: int) -> FloatArray:
     """T_0 ... T_degree at x in [-1, 1], shape (len(x), degree + 1)."""
     return np.cos(np.arange(degree + 1) * np.arccos(np.clip(x, -1.0, 1.0))[:, None])
+
+
+def _ascending_basis(x: FloatArray, degree: int) -> FloatArray:
+    """T_0 ... T_degree at x in [-1, 1], shape (degree + 1, len(x)); at many by the recurrence, which is quicker."""
+    if x.size < _MANY and degree > 1:
+        return _chebyshev_basis(x, degree).T
+    x = np.clip(x, -1.0, 1.0)
+    basis = np.ones((degree + 1, x.size))
+    if degree > 0:
+        basis[1] = x
+    twice = 2.0 * x
+    for number in range(2, degree + 1):
+        np.multiply(twice, basis[number - 1], out=basis[number])
+        basis[number] -= basis[number - 2]
+    return basis
 
 
 def wrap(fraction: FloatArray) -> FloatArray:
@@ -248,17 +266,24 @@ class PiecewiseChebyshev:
 
     def _along(self, asked: FloatArray, side: Side) -> FloatArray:
         """Values at many fractions."""
-        wrapped = wrap(asked.ravel())
+        flat = asked.ravel()
+        within = flat.size > 0 and flat.min() >= 0.0 and flat.max() <= 1.0 - SAME_INSTANT
+        wrapped = flat if within else wrap(flat)
         nudge = SAME_INSTANT if side == "right" else -SAME_INSTANT
         # Before the first breakpoint one is still on the last piece of the period before, number -1.
         piece = np.searchsorted(self.breakpoints, wrapped + nudge, side="right") - 1
+        changes = np.flatnonzero(piece[1:] != piece[:-1]) + 1
+        if changes.size > 2 * self.breakpoints.size:  # in no order
+            order = np.argsort(piece, kind="stable")
+            values = np.empty((wrapped.size, self.components))
+            values[order] = self._along(wrapped[order], side)
+            return values.reshape(*asked.shape, self.components)
         offset = wrapped - self.breakpoints[piece] + (piece < 0)
-        basis = _chebyshev_basis(2.0 * offset / self.lengths[piece] - 1.0, self.degree)
+        basis = _ascending_basis(2.0 * offset / self.lengths[piece] - 1.0, self.degree)
         values = np.empty((wrapped.size, self.components))
-        for number in range(-1, self.breakpoints.size):
-            chosen = piece == number
-            if chosen.any():
-                values[chosen] = basis[chosen] @ self.coefficients[number]
+        for begin, end in pairwise([0, *changes.tolist(), wrapped.size]):
+            if end > begin:
+                values[begin:end] = basis[:, begin:end].T @ self.coefficients[piece[begin]]
         return values.reshape(*asked.shape, self.components)
 
     def _at(self, fraction: float, side: Side) -> FloatArray:
