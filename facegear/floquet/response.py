@@ -142,12 +142,13 @@ class SteadyResponse:
         )
         # The integral of P_d(z) e^{−iaz} over [−1, 1] is 2 (−i)^d j_d(a), for any order.
         turning = lengths * np.exp(-2j * np.pi * s * (self.state.breakpoints + lengths / 2.0))
+        found = np.zeros((s.size, 2 * self.system.size), dtype=complex)
         own, number = _distinct(lengths)
-        amplitudes = sum(
-            (2.0 * (-1j) ** d * turning * spherical_jn(d, np.pi * s * own)[:, number]) @ series[:, d]
-            for d in degrees.tolist()
-        )
-        found = np.asarray(amplitudes, dtype=complex)
+        for which, length in enumerate(own.tolist()):
+            panels = number == which
+            moments = np.tensordot(turning[:, panels], series[panels], axes=1)
+            factors = 2.0 * (-1j) ** degrees * spherical_jn(degrees, np.pi * s * length)
+            found += np.einsum("sd,sdn->sn", factors, moments)
         found[0] /= 2.0
         return found
 
