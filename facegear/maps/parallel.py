@@ -14,10 +14,11 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -26,6 +27,9 @@ from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 # Seconds of work from which on processes are started, which by itself takes a few.
 _WORTH_PROCESSES = 8.0
@@ -146,6 +150,20 @@ def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]
     yield from Parallel(n_jobs=jobs, return_as="generator")(tasks)
 
 
+def one_thread() -> AbstractContextManager[Any]:
+    """Limit libraries of linear algebra to one thread: matrices are too small to share, and threads would wait."""
+    limited: AbstractContextManager[Any] = _libraries(len(sys.modules)).limit(limits=1)
+    return limited
+
+
+@lru_cache(maxsize=1)
+def _libraries(_modules: int) -> ThreadpoolController:
+    """Libraries with threads, looked for only after further modules: that takes as long as a small task."""
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
+
+
 def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
     _begin_as_worker()
@@ -199,8 +217,7 @@ def _in_parallel(
                 yield from (_run(*task) for task in tasks)
             return
     if together:
-        # Threads share one limit: set before the first, or each would restore what another has set, and looking for the
-        # libraries that it holds for takes as long as a small task.
+        # Threads share one limit: set before the first, or each would restore what another has set.
         here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
         work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
         with one_thread():

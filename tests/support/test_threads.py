@@ -40,7 +40,7 @@ SEEN: list[set[int]] = []
 class Watched:
     """A model that notes with how many threads it is asked for its system."""
 
-    own: GearPair = GearPair(contact_ratio=1.563, shaft_damping=0.02)
+    own: GearPair
 
     @property
     def coordinates(self):
@@ -66,7 +66,7 @@ SPEEDS = (1.0, 2.4)
 )
 def test_functions_that_take_long_have_one_thread(two_threads, work):
     SEEN.clear()
-    work(Watched())
+    work(Watched(GearPair(contact_ratio=1.563, shaft_damping=0.02)))
     # What is asked for first may be whether there is a system at all.
     assert SEEN[-1] == {1}
     assert threads() == {2}
