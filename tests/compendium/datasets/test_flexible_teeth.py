@@ -1,5 +1,7 @@
 """Arrays and figures of the chapter on flexible teeth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,25 @@ def test_tongues_stand_under_the_names_of_their_models():
             [float(fg.rpm(tongue.lower)) for tongue in one]
         )
     assert any(found)
+
+
+def test_a_model_is_asked_for_what_its_tongues_hang_together_with():
+    wave = fg.PiecewiseChebyshev.fit(lambda x, piece: 1e-6 * np.cos(2.0 * np.pi * x), [0.0])
+    speeds = fg.rad_per_s(np.linspace(300.0, 1000.0, 36))
+    found = fg.tongues(SPRUNG, (speeds[0], speeds[-1]))
+    told = arrays.looked_at(SPRUNG, found, ("load.damping", "mesh_stiffness"), wave, speeds)
+    assert 0 < told.predicted <= len(found)
+    strongest = max(found, key=lambda tongue: tongue.growth_rate)
+    step = 1e-4
+    moved = (replace(SPRUNG, mesh_stiffness=part * SPRUNG.mesh_stiffness) for part in (1 - step, 1 + step))
+    before, after = (fg.growth_rate(model.system(strongest.peak)) for model in moved)
+    assert told.lever == "mesh_stiffness"
+    assert told.change == pytest.approx(0.01 * (after - before) / (2.0 * step), rel=1e-3)
+    assert told.resonance
+    assert speeds[0] < told.speed < speeds[-1]
+    assert told.force > 0.0
+    without = arrays.looked_at(HELD, (), ("load.damping",), wave, speeds[:5])
+    assert (without.predicted, without.lever) == (0, "")
 
 
 def test_shares_count_what_grows():
