@@ -1,19 +1,20 @@
 """The engine: stability of linear systems with periodic coefficients (chapter 2). It knows nothing of gears.
 
 `periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
-`multipliers` the transition matrix by the methods of `collocation`, `stepping` and `radau`, `columns`,
+`multipliers` the transition matrix by the methods of `collocation`, `stepping`, `radau` and `taylor`, `columns`,
 `multiplier_curves` and `sheets` the same along a parameter, along speed and along both; `eigenvalues` are those of many
-matrices, in `lockstep` where Numba is installed, as `lockstep_exponentials` has steps of small systems; `modes` has
-natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu` are the approximations, `hill` the
-harmonic balance of motions. `response` has the steady motion that forces cause, along the panels of `motion`. Systems
-whose loads act in contact only are those of `clearance`: `orbits` has their periodic motions, on the panels of
-`contact_panels`, `continuation` the families of these along a parameter, `transients` where other motions end,
-compiled in `lockstep_transients` where Numba is installed.
+matrices, in `lockstep` where Numba is installed, as `lockstep_exponentials` and `lockstep_taylor` have steps of small
+systems; `modes` has natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu` are the
+approximations, `hill` the harmonic balance of motions. `response` has the steady motion that forces cause, along the
+panels of `motion`. Systems whose loads act in contact only are those of `clearance`: `orbits` has their periodic
+motions, on the panels of `contact_panels`, `continuation` the families of these along a parameter, `transients` where
+other motions end, compiled in `lockstep_transients` where Numba is installed.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*
 modes do not oscillate; *sensitivities* are the derivatives of :mod:`facegear.maps.sensitivity`. Without a name
-:func:`facegear.floquet.multipliers.with_method` takes `Collocation`, and `AdaptiveMagnus` where that does not apply.
+:func:`facegear.floquet.multipliers.with_method` takes `Collocation`, and `AdaptiveMagnus` where that does not apply;
+maps of small systems take `Taylor`.
 
 ===============  =====  ==========  =====  =======  =============  =====  ==========================================
 method           jumps  overdamped  rigid  weights  sensitivities  order  cost
@@ -24,10 +25,12 @@ Magnus           yes    yes         yes    yes      yes            4      as Ste
 AdaptiveMagnus   yes    yes         yes    yes      yes            10     Magnus thrice or more, dear if overdamped
 Collocation      yes    no          yes    yes      no             32     16 equations a load and panel, the least
 Radau            yes    yes         yes    yes      no             31     16 n equations a panel, best if overdamped
+Taylor           no     yes         yes    no       no             any    a recurrence, of many small systems the least
 ===============  =====  ==========  =====  =======  =============  =====  ==========================================
 
-The order holds at jumps of A(t) too. That of Stepwise is 2 where there are none; of the last two it is that of the
-default number of nodes, at the end of a panel.
+The order holds at jumps of A(t) too. That of Stepwise is 2 where there are none; of Collocation and Radau it is that of
+the default number of nodes, at the end of a panel; series of Taylor end when their terms have become small, and may
+have loads with a weight but without a mass.
 Public: `PeriodicSystem`, `ContactLoad`, `PiecewiseChebyshev`, `transition_matrix`, `multipliers`, `growth_rate`,
 `error_estimate`, `steady_response`, `Excited`, `WithoutRigidMotion`, `replace_parameter`, `resonance_bands`.
 """

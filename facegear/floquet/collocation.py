@@ -89,17 +89,17 @@ class FreeModes:
         UnsuitableSystemError
             If a mode does not oscillate (rigid-body or overdamped) or the modes do not span the state space.
         """
-        return cls._of(system.mass, system.damping, system.stiffness)
+        return cls.of_matrices(system.mass, system.damping, system.stiffness)
 
     @classmethod
     def of_all(cls, systems: Sequence[PeriodicSystem]) -> FreeModes:
         """Find the modes of several systems of one size, with the systems along the first axis; as :meth:`of`."""
-        return cls._of(
-            *(np.stack([getattr(x, name) for x in systems]) for name in ("mass", "damping", "stiffness"))
-        )
+        parts = [np.stack([getattr(x, name) for x in systems]) for name in ("mass", "damping", "stiffness")]
+        return _modes(parts[0].shape, *(part.tobytes() for part in parts))
 
     @classmethod
-    def _of(cls, mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FreeModes:
+    def of_matrices(cls, mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FreeModes:
+        """Find the modes from M, C and K, each (..., n, n); as :meth:`of`."""
         n = mass.shape[-1]
         if not stiffness.any(axis=(-1, -2)).all():
             raise UnsuitableSystemError("stiffness is zero: every free motion is a rigid-body motion")
@@ -140,6 +140,13 @@ class FreeModes:
     def real_from_state(self) -> FloatArray:
         """Matrix from (q, q̇) to (Re y, Im y), shape (..., 2n, 2n)."""
         return np.concatenate([self.coordinates.real, self.coordinates.imag], axis=-2)
+
+
+@lru_cache(maxsize=16)
+def _modes(shape: tuple[int, ...], mass: bytes, damping: bytes, stiffness: bytes) -> FreeModes:
+    """Modes of systems with these matrices, which rows of a map have in common where only loads differ."""
+    matrices = (np.frombuffer(part).reshape(shape) for part in (mass, damping, stiffness))
+    return FreeModes.of_matrices(*matrices)
 
 
 def _inverse(basis: ComplexArray) -> ComplexArray:

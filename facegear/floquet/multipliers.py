@@ -513,7 +513,11 @@ def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> F
 def rounding_shift(system: PeriodicSystem, method: Method) -> float:
     """Part of :func:`error_estimate` that is due to rounding: how far it moves a multiplier that may be the largest."""
     family = Family([system])
-    scaled = method.scaled_transition_matrices(family)[0]
+    return shift_by_rounding(method.scaled_transition_matrices(family)[0], family, method)
+
+
+def shift_by_rounding(scaled: FloatArray, family: Family, method: Method) -> float:
+    """As :func:`rounding_shift`, of the one system of a family whose scaled transition matrix is known."""
     rounding = rounding_error(scaled, family, method)
     radii = np.abs(_eigenvalues(disturbed(scaled, family, method))).max(axis=-1)
     return float(max(rounding, np.abs(radii - np.abs(_eigenvalues(scaled)).max()).max()))

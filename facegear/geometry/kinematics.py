@@ -192,12 +192,22 @@ class TimedPairs(ABC):
             raise ValueError(
                 f"x must lie in [-1, 1] on a piece, got {local.flat[np.argmax(np.abs(local))]!r}"
             )
-        start, end = (*self.breakpoints, 1.0)[piece : piece + 2]
+        there, *others, stiffness = self.pair_states_on_pieces(np.array([piece]), local.reshape(1, -1))
+        shape = (self.pairs, *local.shape)
+        radius, angle, length = (part.reshape(shape) for part in others)
+        own = None if stiffness is None else stiffness.reshape(shape)
+        return PairStates(there.reshape(shape), radius, angle, length, own)
+
+    def pair_states_on_pieces(self, pieces: NDArray[np.intp], local: FloatArray) -> PairStates:
+        """As :meth:`pair_states_on_piece` on several pieces (k,) at once, at local times of each, shape (k, m)."""
+        edges = np.append(self.breakpoints, 1.0)
+        start, end = edges[pieces, np.newaxis], edges[pieces + 1, np.newaxis]
         fraction = 0.5 * (start * (1.0 - local) + end * (1.0 + local))
-        ages = np.stack([fraction + j for j in range(self.pairs)])
+        number = np.arange(self.pairs)[:, np.newaxis, np.newaxis]
         # No pair enters or leaves inside a piece: its middle decides for the whole.
-        in_mesh = 0.5 * (start + end) + np.arange(self.pairs) < self.contact_ratio
-        return self._states(ages, np.broadcast_to(in_mesh.reshape(-1, *([1] * local.ndim)), ages.shape))
+        in_mesh = 0.5 * (start + end) + number < self.contact_ratio
+        ages = fraction + number
+        return self._states(ages, np.broadcast_to(in_mesh, ages.shape))
 
     @abstractmethod
     def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
@@ -513,9 +523,9 @@ class CentroidPath(ContactPath):
         """As :meth:`ContactPath.pair_states`, all pairs at the centroid."""
         return _gathered(super().pair_states(x))
 
-    def pair_states_on_piece(self, index: int, x: ArrayLike) -> PairStates:
-        """As :meth:`ContactPath.pair_states_on_piece`, all pairs at the centroid."""
-        return _gathered(super().pair_states_on_piece(index, x))
+    def pair_states_on_pieces(self, pieces: NDArray[np.intp], local: FloatArray) -> PairStates:
+        """As :meth:`ContactPath.pair_states_on_pieces`, all pairs at the centroid."""
+        return _gathered(super().pair_states_on_pieces(pieces, local))
 
 
 def _gathered(states: PairStates) -> PairStates:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -616,6 +616,12 @@ class UnloadedContact:
         return 2.0 * centre * (involute(alpha) - involute(working))
 
 
+@lru_cache(maxsize=64)
+def aligned_contact(drive: Drive) -> UnloadedContact:
+    """Contact of aligned gears, found once for all that follows it."""
+    return UnloadedContact(drive)
+
+
 @dataclass(frozen=True)
 class PointPath(TimedPairs):
     """Path of the unloaded contact of aligned gears: each pair at one place along the face, on the line of action.
@@ -635,12 +641,12 @@ class PointPath(TimedPairs):
     """
 
     def __post_init__(self) -> None:
-        UnloadedContact(self.drive)
+        _ = self._contact
         super().__post_init__()
 
-    @cached_property
+    @property
     def _contact(self) -> UnloadedContact:
-        return UnloadedContact(self.drive)
+        return aligned_contact(self.drive)
 
     @property
     def pitch_passage(self) -> float:

@@ -14,9 +14,8 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
@@ -25,10 +24,11 @@ import numpy as np
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 if TYPE_CHECKING:
-    from threadpoolctl import ThreadpoolController
+    pass
 
 # Seconds of work from which on processes are started, which by itself takes a few.
 _WORTH_PROCESSES = 8.0
@@ -147,20 +147,6 @@ def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]
     jobs = number_of_workers("jobs", jobs)
     tasks = (delayed(_on_one_thread)(function, *arguments) for arguments in work)
     yield from Parallel(n_jobs=jobs, return_as="generator")(tasks)
-
-
-def one_thread() -> AbstractContextManager[Any]:
-    """Limit libraries of linear algebra to one thread: matrices are too small to share, and threads would wait."""
-    limited: AbstractContextManager[Any] = _libraries(len(sys.modules)).limit(limits=1)
-    return limited
-
-
-@lru_cache(maxsize=1)
-def _libraries(_modules: int) -> ThreadpoolController:
-    """Libraries with threads, looked for only after further modules: that takes as long as a small task."""
-    from threadpoolctl import ThreadpoolController
-
-    return ThreadpoolController()
 
 
 def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:

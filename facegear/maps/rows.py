@@ -21,6 +21,7 @@ from facegear.floquet.multipliers import Method, rounding_error, transition_matr
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.sheets import SHEET_TOLERANCE, windows
 from facegear.floquet.stepping import Family
+from facegear.maps.likeness import same_layout
 from facegear.maps.parallel import parts_of
 from facegear.support.types import FloatArray
 
@@ -72,15 +73,6 @@ class Rows:
         # Models are built here, in the process that uses them: what they prepare may be most of the work.
         rows = (_row(replace_at(self.model, self.path, value), speeds, self.method) for value in self.values)
         return np.stack(list(rows), axis=1)
-
-
-def same_layout(one: PeriodicSystem, other: PeriodicSystem) -> bool:
-    """Whether two systems have the same size, number of loads and breakpoints."""
-    return (
-        one.size == other.size
-        and len(one.loads) == len(other.loads)
-        and np.array_equal(one.breakpoints, other.breakpoints)
-    )
 
 
 def in_rows(

@@ -26,6 +26,7 @@ from facegear.floquet.piecewise import Side
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import integer_at_least, positive
+from facegear.support.threads import one_thread
 from facegear.support.types import ComplexArray, FloatArray
 
 SPEED = "speed"
@@ -322,6 +323,7 @@ class Sensitivity:
         return np.asarray((self.multiplier_derivatives / self.multiplier).real, dtype=float)
 
 
+@one_thread()
 def sensitivity(
     model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
 ) -> Sensitivity:

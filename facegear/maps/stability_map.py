@@ -10,6 +10,9 @@ What is left are eigenvalues. Columns are shared out over processes or threads b
 Where the parameter counts something, or moves the instants at which the load begins and ends, a map is made of rows
 instead: at one value, transition matrices are smooth functions of speed alone.
 
+Cells of small systems of which speed changes nothing but the period, as gearboxes, are computed one by one, many at a
+time (:mod:`facegear.maps.cells`).
+
 What falls between the columns of a map, tongues narrower than their distance, is found by
 :func:`facegear.maps.tracing.tongues`.
 """
@@ -54,12 +57,13 @@ from facegear.floquet.multipliers import (
     with_method,
 )
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
-from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.sheets import SHEET_TOLERANCE, Sheet, is_interpolated, samples, windows
 from facegear.floquet.stepping import Family
+from facegear.maps.cells import cells_of
+from facegear.maps.likeness import load_parameters_of, same_but_load_parameters, same_layout
 from facegear.maps.parallel import Task, Workers, computed, parts_of
-from facegear.maps.rows import in_rows, same_layout
+from facegear.maps.rows import in_rows
 from facegear.support.parameters import finite_array, number_of_workers, rpm
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -136,13 +140,11 @@ def stability_map(
     jobs = number_of_workers("jobs", jobs)
     name = parameter_path(model, parameter)[-1]
     sweep = _Sweep(model, parameter, tuple(values.tolist()), method)
-    columns = _columns(sweep, speeds)
 
     def run(tasks: Sequence[Task], description: str, prefer: Workers) -> Iterator[tuple[int, FloatArray]]:
         return computed(tasks, description, jobs, progress, cache_directory, prefer)
 
-    radii, periods = _by_row(sweep, speeds, run) if columns is None else _by_column(columns, speeds, run)
-    error = _error_estimate(sweep, speeds, radii)
+    radii, periods, error = _by_cell(sweep, speeds, run) or _by_column_or_row(sweep, speeds, run)
 
     return xarray.DataArray(
         np.log(radii) / periods,
@@ -236,9 +238,9 @@ class _Sweep:
 
     def load_parameters(self, systems: Sequence[PeriodicSystem]) -> FloatArray | None:
         """Mass, damping and stiffness of each contact, (V, 3, loads), if the systems differ in nothing else."""
-        if not all(_same_but_load_parameters(systems[0], other) for other in systems[1:]):
+        if not all(same_but_load_parameters(systems[0], other) for other in systems[1:]):
             return None
-        return np.array([_load_parameters(system) for system in systems])
+        return np.array([load_parameters_of(system) for system in systems])
 
     @property
     def probed(self) -> tuple[Model, ...]:
@@ -261,36 +263,6 @@ class _Sweep:
         """Method in words."""
         chosen = "default method" if self.method is None else repr(self.method)
         return f"{chosen}, transition matrices interpolated along {self.parameter} and speed where they are smooth"
-
-
-def _load_parameters(system: PeriodicSystem) -> list[list[float]]:
-    return [[getattr(load, name) for load in system.loads] for name in ("mass", "damping", "stiffness")]
-
-
-def _same_function(one: PiecewiseChebyshev | None, other: PiecewiseChebyshev | None) -> bool:
-    if one is None or other is None or one is other:
-        return one is other
-    return np.array_equal(one.breakpoints, other.breakpoints) and np.array_equal(
-        one.coefficients, other.coefficients
-    )
-
-
-def _same_but_load_parameters(one: PeriodicSystem, other: PeriodicSystem) -> bool:
-    """Whether two systems differ at most in the mass, damping and stiffness of their loads."""
-    return (
-        one.period == other.period
-        and len(one.loads) == len(other.loads)
-        and len(one.jumps) == len(other.jumps)
-        and all(np.array_equal(getattr(one, m), getattr(other, m)) for m in ("mass", "damping", "stiffness"))
-        and all(
-            a.fraction == b.fraction and np.array_equal(a.matrix, b.matrix)
-            for a, b in zip(one.jumps, other.jumps, strict=True)
-        )
-        and all(
-            a.rate == b.rate and _same_function(a.weight, b.weight) and _same_function(a.shape, b.shape)
-            for a, b in zip(one.loads, other.loads, strict=True)
-        )
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -608,6 +580,28 @@ def _in_chunks(start: int, speeds: Sequence[float], columns: _Columns, size: int
 
 
 _Run = Callable[[Sequence[Task], str, Workers], Iterator[tuple[int, FloatArray]]]
+
+
+def _by_cell(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray, float] | None:
+    """Spectral radii and periods, (V, S), and an estimate of the error, of small systems that speed only turns."""
+    cells = None if sweep.method is not None else cells_of(sweep.models, sweep.probes, speeds)
+    if cells is None:
+        return None
+    radii = np.empty((len(sweep.values), speeds.size))
+    places, tasks = cells.tasks()
+    try:
+        for number, result in run(tasks, "stability map", "threads"):
+            radii[places[number]] = result
+        return radii, cells.periods, cells.error_estimate(radii)
+    except UnsuitableSystemError:
+        return None
+
+
+def _by_column_or_row(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray, float]:
+    """As :func:`_by_cell`, of any models."""
+    columns = _columns(sweep, speeds)
+    radii, periods = _by_row(sweep, speeds, run) if columns is None else _by_column(columns, speeds, run)
+    return radii, periods, _error_estimate(sweep, speeds, radii)
 
 
 def _columns(sweep: _Sweep, speeds: FloatArray) -> _Columns | None:

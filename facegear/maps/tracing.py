@@ -20,10 +20,11 @@ from facegear.floquet.models import Model, parameter_path, replace_parameter, re
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import Method, multipliers
 from facegear.floquet.periodic import PeriodicSystem, rigid_motions
-from facegear.maps.parallel import computed, one_thread, parts_of
+from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
 from facegear.support.parameters import ascending, finite_array, number_of_workers, within
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 _KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -30,6 +30,8 @@ _DUTIES = (0.001, 0.999)
 _CONTACT_RATIOS = (1.0, 5.0)
 # Critical damping leaves no oscillation.
 _DAMPING_RATIOS = (0.0, float(np.nextafter(1.0, 0.0)))
+# Shape of a load on the one coordinate.
+_ALONE = PiecewiseChebyshev.constant([1.0])
 
 
 @lru_cache(maxsize=1)
@@ -141,7 +143,7 @@ class Hill:
     def _load(self) -> ContactLoad:
         """Return the spring that varies: stiffness ε ω0², weight w."""
         stiffness = self.depth * self.natural_frequency**2
-        return ContactLoad(PiecewiseChebyshev.constant([1.0]), stiffness=stiffness, weight=self.wave)
+        return ContactLoad(_ALONE, stiffness=stiffness, weight=self.wave)
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -16,6 +16,7 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from facegear.floquet.periodic import Rate
 from facegear.floquet.piecewise import PiecewiseChebyshev
@@ -233,12 +234,16 @@ class LoadPlace:
         first = self.position(self.position.breakpoints[[self.in_contact.index(True)]])
         components = vector(*first.T).shape[-1]
 
-        def along(fraction: FloatArray, piece: int) -> FloatArray:
-            if not self.in_contact[piece]:
-                return np.zeros((fraction.size, components))
-            return vector(*np.moveaxis(self.position(fraction), -1, 0))
+        there = np.array(self.in_contact)
 
-        return PiecewiseChebyshev.fit(along, self.position.breakpoints, tolerance=self.tolerances)
+        def along(fractions: FloatArray, pieces: NDArray[np.intp]) -> FloatArray:
+            found = np.zeros((*fractions.shape, components))
+            on = there[pieces]
+            vectors = vector(*self.position(fractions[on].ravel()).T)
+            found[on] = vectors.reshape(*fractions[on].shape, components)
+            return found
+
+        return PiecewiseChebyshev.fit_together(along, self.position.breakpoints, tolerance=self.tolerances)
 
     def rotated(self, angle: float) -> LoadPlace:
         """Return the place ahead by a constant angle [rad]: that of a pinion elsewhere."""
@@ -307,9 +312,10 @@ def _places(
     def place(load: int) -> LoadPlace:
         in_contact = tuple((middles + load < path.contact_ratio).tolist()) if each else (True,) * middles.size
 
-        def position(fraction: FloatArray, piece: int) -> FloatArray:
-            local = (2.0 * fraction - edges[piece] - edges[piece + 1]) / (edges[piece + 1] - edges[piece])
-            states = path.pair_states_on_piece(piece, np.clip(local, -1.0, 1.0))
+        def position(fractions: FloatArray, pieces: NDArray[np.intp]) -> FloatArray:
+            start, end = edges[pieces, np.newaxis], edges[pieces + 1, np.newaxis]
+            local = (2.0 * fractions - start - end) / (end - start)
+            states = path.pair_states_on_pieces(pieces, np.clip(local, -1.0, 1.0))
             if each:
                 radius, angle = states.radius[load], states.angle[load]
                 stiffness = None if states.stiffness is None else states.stiffness[load]
@@ -321,7 +327,7 @@ def _places(
             parts = [radius / drive.outer_radius, angle, *([] if stiffness is None else [stiffness])]
             return np.stack(parts, axis=-1)
 
-        fitted = PiecewiseChebyshev.fit(position, path.breakpoints, tolerance=path.fit_tolerances)
+        fitted = PiecewiseChebyshev.fit_together(position, path.breakpoints, tolerance=path.fit_tolerances)
         if fitted.components == 2:
             return LoadPlace(fitted, in_contact, path.fit_tolerances)
         place, weight = fitted.transformed(np.eye(3)[:2]), fitted.transformed(np.eye(3)[2:])

@@ -21,7 +21,7 @@ from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.contact_lines import crossing
@@ -216,6 +216,11 @@ class LoadedContact:
         """Approach δ when a pair has an age [m]."""
         return self._approach_from(self._near(ages), ages)
 
+    def _settled(self, ages: FloatArray) -> FloatArray:
+        """Approach when a pair has an age [m], from the series over the period: one step of Newton's rule."""
+        first, _, series = self._mesh
+        return self._approach_from(series(ages - first)[..., 0], ages)
+
     def _near(self, ages: FloatArray) -> FloatArray:
         """Approach from its neighbours in time [m]."""
         return np.interp(ages, np.arange(_INSTANTS) / _INSTANTS, self._coarse, period=1.0)
@@ -294,13 +299,14 @@ class LoadedContact:
         # Both to one size, so that a fit resolves both.
         units = np.array([self.force / self.pair_stiffness, self.pair_stiffness])
 
-        def values(fraction: FloatArray, piece: int) -> FloatArray:
-            instants = fraction + first
+        def values(fractions: FloatArray, pieces: NDArray[np.intp]) -> FloatArray:
+            instants = fractions + first
             lines = self._lines(self._all_pairs(instants))
             balanced = self._law.balanced(self.force, self._near(instants), lines)
             return np.asarray(np.stack(balanced, axis=-1) / units)
 
-        return PiecewiseChebyshev.fit(values, breakpoints, tolerance=fit_tolerances(breakpoints)).transformed(
+        tolerances = fit_tolerances(breakpoints)
+        return PiecewiseChebyshev.fit_together(values, breakpoints, tolerance=tolerances).transformed(
             np.diag(units)
         )
 
@@ -386,7 +392,7 @@ class LoadedContact:
     def pairs_of_age(self, ages: ArrayLike) -> LoadedPairs:
         """As :meth:`pairs`, of pairs that have been pressed for so many mesh periods, of any shape."""
         since_first_line = finite_array("ages", ages) + self._mesh[0]
-        approach = self._approach(since_first_line)
+        approach = self._settled(since_first_line)
         lines = self._lines(since_first_line)
         force, stiffness = self._law.force(approach, lines)
         # Where a pair is not pressed its place means nothing; that of the unloaded contact is always there.
@@ -431,7 +437,7 @@ class LoadedContact:
                 f"{places.shape}"
             )
         places = np.broadcast_to(places, (*ages.shape, places.shape[-1]))
-        return self._law.pressure(self._approach(ages), self._lines(ages), places)
+        return self._law.pressure(self._settled(ages), self._lines(ages), places)
 
 
 def _ages(instants: FloatArray, longest: float) -> FloatArray:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, PairStates, TimedPairs
-from facegear.geometry.point_contact import ALIGNED, Misalignment, PointPath, UnloadedContact
+from facegear.geometry.point_contact import ALIGNED, Misalignment, PointPath, aligned_contact
 from facegear.mechanics.loaded_contact import (
     COMPLIANCES,
     LoadedContact,
@@ -73,7 +73,7 @@ def point_contact(drive: Drive, contact_ratio: float | None = None) -> PointPath
     >>> round(point_contact(Drive(26, 130, 3.175e-3, shaper_teeth=27)).contact_ratio, 6)
     1.557364
     """
-    return PointPath(drive, UnloadedContact(drive).contact_ratio if contact_ratio is None else contact_ratio)
+    return PointPath(drive, aligned_contact(drive).contact_ratio if contact_ratio is None else contact_ratio)
 
 
 @dataclass(frozen=True)

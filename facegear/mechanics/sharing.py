@@ -153,9 +153,9 @@ class SharedPath(TimedPairs):
         """As :meth:`TimedPairs.pair_states`, with the stiffness of each pair."""
         return self._stiffened(self.own.pair_states(x))
 
-    def pair_states_on_piece(self, index: int, x: ArrayLike) -> PairStates:
-        """As :meth:`TimedPairs.pair_states_on_piece`, with the stiffness of each pair."""
-        return self._stiffened(self.own.pair_states_on_piece(index, x))
+    def pair_states_on_pieces(self, pieces: NDArray[np.intp], local: FloatArray) -> PairStates:
+        """As :meth:`TimedPairs.pair_states_on_pieces`, with the stiffness of each pair."""
+        return self._stiffened(self.own.pair_states_on_pieces(pieces, local))
 
     def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
         return self._stiffened(self.own._states(ages, in_mesh))

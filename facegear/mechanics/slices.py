@@ -272,11 +272,11 @@ class Slices:
             edges = np.unique([*edges, *_graded(edges)])
             tolerances = 1e-12 * np.maximum(1.0, 1e-3 / np.diff(edges, append=1.0))
 
-        def ends(fraction: FloatArray, piece: int) -> FloatArray:
-            lower, upper = self._bounds(self._line(np.minimum(fraction * self._whole, self.sweep)))
+        def ends(fractions: FloatArray, pieces: NDArray[np.intp]) -> FloatArray:
+            lower, upper = self._bounds(self._line(np.minimum(fractions * self._whole, self.sweep)))
             return self.root_gap(np.stack([lower.max(axis=0), upper.min(axis=0)], axis=-1))
 
-        return PiecewiseChebyshev.fit(ends, edges, tolerance=tolerances)
+        return PiecewiseChebyshev.fit_together(ends, edges, tolerance=tolerances)
 
     @property
     def _whole(self) -> float:

@@ -69,6 +69,8 @@ _SQUARE = np.zeros((_POINTS, _POINTS), dtype=int)
 _SQUARE[_TRIANGLE] = _SQUARE.T[_TRIANGLE] = np.arange(_TRIANGLE[0].size)
 _TO_SLOPES = chebyshev.chebder(np.eye(_POINTS))
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_PLACES, _POINTS - 1))
+# Steps either way, of the one before.
+_HALF = np.array([-0.5, 0.5]).reshape(2, 1, 1)
 # Newton's rule for ends: steps, the error from which the next step is the last, and how much of a contact one may drop.
 _STEPS, _NEARLY, _MOST = 80, 1e-8, 0.45
 
@@ -561,6 +563,7 @@ class PlateCompliance(Compliance):
         """
         series = self._series(lines)
         ends, change = _reach(approach, lines), np.array(np.inf)
+        before = np.zeros(ends.shape)
         for _ in range(_STEPS):
             state = self._state(ends, lines, series, balance)
             over, slope = _at_ends(state, lines)
@@ -570,7 +573,10 @@ class PlateCompliance(Compliance):
             moved = np.clip(ends + _step(over, slope, ends[1] - ends[0]), *limits)
             # A pair that was not pressed, and is within reach now.
             moved = np.where(ends[1] > ends[0], moved, limits)
-            ends, change = moved, np.abs(moved - ends)
+            # An end that turns back goes half as far at most, lest it go to and fro for ever.
+            step = moved - ends
+            step = np.where(step * before < 0.0, np.clip(step, *_HALF * np.abs(before)), step)
+            ends, before, change = ends + step, step, np.abs(step)
         raise RuntimeError(f"ends of the contact did not settle: last step {change.max():.3g} √m")
 
     def _at(self, approach: FloatArray, lines: Lines) -> tuple[_State, FloatArray]:

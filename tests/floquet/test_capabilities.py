@@ -18,6 +18,7 @@ from facegear.floquet.multipliers import (
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
+from facegear.floquet.taylor import Taylor
 from facegear.maps.sensitivity import sensitivity
 
 METHODS = {
@@ -29,6 +30,7 @@ METHODS = {
         AdaptiveMagnus(),
         Collocation(),
         Radau(),
+        Taylor(),
     )
 }
 CONSTANT = PiecewiseChebyshev.constant([1.0, 0.4])

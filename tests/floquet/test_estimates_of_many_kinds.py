@@ -19,11 +19,12 @@ from facegear.floquet.multipliers import (
 )
 from facegear.floquet.radau import Radau
 from facegear.floquet.stepping import Family
+from facegear.floquet.taylor import Taylor
 from tests.independent import error_systems, exact_multipliers
 from tests.independent.monodromy import integrated
 
 STORED = error_systems.stored()
-METHODS = (Magnus(128), AdaptiveMagnus(), Collocation(), Radau(), AlignedStepwise(128))
+METHODS = (Magnus(128), AdaptiveMagnus(), Collocation(), Radau(), Taylor(), AlignedStepwise(128))
 
 
 @pytest.fixture(autouse=True)

@@ -389,3 +389,36 @@ def test_replace_loads_leaves_the_rest():
     assert [load.damping for load in changed.loads] == [0.5, 0.5]
     assert [load.mass for load in changed.loads] == [3.0, 0.0]
     assert [load.stiffness for load in system.loads] == [1.0, 4.0]
+
+
+def test_pieces_fitted_together_are_those_fitted_one_by_one():
+    edges = np.array([0.0, 0.3, 0.55])
+    asked = []
+
+    def alone(x, piece):
+        return np.stack([np.exp((piece + 1) * x), np.sin(20.0**piece * x)], axis=-1)
+
+    def together(x, pieces):
+        asked.append(pieces.tolist())
+        return np.stack([alone(row, piece) for row, piece in zip(x, pieces, strict=True)])
+
+    one, other = PiecewiseChebyshev.fit(alone, edges), PiecewiseChebyshev.fit_together(together, edges)
+    x = np.linspace(0.0, 1.0, 201)
+    assert np.abs(one(x) - other(x)).max() < 1e-11
+    # Only what is not resolved yet is asked for again.
+    assert asked[0] == [0, 1, 2]
+    assert asked[-1] == [2]
+    assert len(asked) > 2
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (lambda x, pieces: x[:, :3], "must return shape"),
+        (lambda x, pieces: np.full(x.shape, np.nan), "must be finite"),
+        (lambda x, pieces: x + 1j, "must return real numbers"),
+    ],
+)
+def test_what_pieces_fitted_together_refuse(function, message):
+    with pytest.raises((TypeError, ValueError), match=message):
+        PiecewiseChebyshev.fit_together(function, [0.0, 0.5])

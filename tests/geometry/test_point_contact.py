@@ -16,6 +16,7 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.point_contact import Misalignment, PointPath, UnloadedContact
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.paths import point_contact
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad
@@ -451,3 +452,12 @@ def test_ends_of_the_face_in_the_coordinate_of_the_shapers_axis(angle):
             ValueError, match="the coordinates u along the shaper's axis where the flank has points"
         ):
             contact.gap(beyond)
+
+
+def test_the_contact_of_a_drive_is_found_once_for_its_paths(monkeypatch):
+    found, fault = [], UnloadedContact._fault
+    monkeypatch.setattr(UnloadedContact, "_fault", lambda contact: found.append(contact) or fault(contact))
+    drive = replace(CASE_ONE, module=3.3e-3)
+    for path in (point_contact(drive), PointPath(drive, 1.5)):
+        path.pair_states(0.25)
+    assert len(found) == 1

@@ -28,6 +28,15 @@ from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
 
+
+@pytest.fixture(scope="module", autouse=True)
+def _small_models_stand_for_large_ones():
+    """Their cells would be computed together (test_cells); here they go by column, on sheets and by row."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(maps, "cells_of", lambda models, probes, speeds: None)
+        yield
+
+
 TURN = 2.0 * np.pi
 
 

@@ -229,6 +229,12 @@ def test_pairs_carry_the_torque_and_press_without_sticking_or_sinking_in(torque)
     assert_allclose(np.trapezoid(pressure, SLICES.position(s), axis=-1), force, atol=1e-3 * plates.force)
 
 
+def test_an_end_that_newtons_rule_sends_to_and_fro_settles():
+    # Of a pair whose line ends a little beyond what is within reach; whole steps would repeat for ever.
+    ratio = contact(269.77225742247344).contact_ratio
+    assert contact(269.0).contact_ratio < ratio < contact(270.5).contact_ratio
+
+
 @pytest.mark.parametrize("torque", [1.0, 100.0])
 def test_stiffness_is_the_growth_of_force(torque):
     law, ages = contact(torque)._law, np.linspace(0.2, 3.0, 15)
