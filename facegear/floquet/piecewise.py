@@ -392,7 +392,7 @@ class PiecewiseChebyshev:
         return right - left
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=128)
 def _evaluated(function: PiecewiseChebyshev, fractions: bytes, side: Side) -> FloatArray:
     """Values at fractions: the systems of a family, and those of one tongue, are asked for at the same ones."""
     return function._along(np.frombuffer(fractions), side)

@@ -101,7 +101,8 @@ def system_derivative(model: Model, speed: float, parameter: str) -> SystemDeriv
     nodes = ChebyshevSeries.points_of(value - half, value + half, _NODES - 1).tolist()
     # Which field it is takes longer to find than to replace.
     path = () if parameter == SPEED else parameter_path(model, parameter)
-    present, *systems = (_system(model, speed, path, node) for node in [value, *nodes])
+    systems = [_system(model, speed, path, node) for node in nodes]
+    present = systems[_NODES // 2]
     for system in systems:
         _same_shapes(present, system, parameter)
 
