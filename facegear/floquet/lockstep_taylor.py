@@ -23,11 +23,13 @@ def _add_products(
     power: np.uint64,
     terms: FloatArray,
     before: tuple[np.uint64, np.uint64, np.uint64],
+    varies: NDArray[np.bool_],
     n: np.uint64,
 ) -> None:
     """Add to `out` (n, 2n) the products of three powers (n, 2n) in a row with the terms (2n, 2n) that they belong to.
 
-    Six terms a pass: the more there are in one, the fewer checks that the buffers are not the same.
+    Six terms a pass: the more there are in one, the fewer checks that the buffers are not the same. Where nothing
+    varies there is no power but the first.
     """
     row = _TWO * n * _N
     first, second, third = before
@@ -36,7 +38,17 @@ def _add_products(
         for j in range(_TWO * n):
             to = np.uint64(i) * row + np.uint64(j) * _N
             a, b = power * size + np.uint64(i) * row, np.uint64(j) * _N
-            for _ in range(n):
+            for other in range(n):
+                if not varies[i, other]:
+                    if power == 0:
+                        for lane in range(_N):
+                            k, at = a + lane, b + lane
+                            out[to + lane] += (
+                                both[k] * terms[first + at] + both[k + half] * terms[first + size + at]
+                            )
+                    a += _N
+                    b += row
+                    continue
                 for lane in range(_N):
                     k, at = a + lane, b + lane
                     out[to + lane] += (
@@ -118,6 +130,16 @@ def _taylor(
     terms, state = np.zeros(slots * whole), np.zeros(whole)
     force, both = np.zeros(half), np.zeros(padded * 2 * size * size * LANES)
     own_k, own_c = np.zeros(size * size * LANES), np.zeros(size * size * LANES)
+    varies = np.zeros((size, size), np.bool_)
+    for step in range(lengths.size):
+        for power in range(1, powers):
+            for load in range(loads):
+                for i in range(size):
+                    for j in range(size):
+                        there = (
+                            dyads[step, power, load, i, j] != 0.0 or slopes[step, power, load, i, j] != 0.0
+                        )
+                        varies[i, j] = varies[i, j] or there
     # Period, and stiffness and damping of each load.
     own = np.zeros((1 + 2 * loads) * LANES)
     begun, now, last = np.zeros(LANES), np.zeros(LANES), np.zeros(LANES)
@@ -161,7 +183,7 @@ def _taylor(
                         np.uint64((order - 2 - power) % slots * whole),
                         np.uint64((order - 3 - power) % slots * whole),
                     )
-                    _add_products(force, both, np.uint64(power), terms, before, n)
+                    _add_products(force, both, np.uint64(power), terms, before, varies, n)
                 for at in range(half):
                     terms[new + half + at] = force[at] * inverse
                 for at in range(np.uint64(whole)):

@@ -16,6 +16,7 @@ any equations choose steps and order for each motion alone (Jorba and Zou, Exper
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -40,17 +41,10 @@ _CANCELLED = 5.0
 _MOST_TERMS, _MOST_HALVINGS = 48, 4
 # Steps of a period beyond which exponentials, which are squared, take less time.
 _MOST_STEPS = 1000
-# Cells go together if their norms are at least this part of the largest among them.
-_TOGETHER = 0.75
+# Cells go together if their norms are at least this part of the largest among them, or if they are so few.
+_TOGETHER, _LANES = 0.8, 32
 # Cells fewer than these are not worth another library.
 _FEWEST = 5
-# From values at the points to coefficients of T_j(2s − 1).
-_TO_SERIES = np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(_POINTS), _POINTS - 1))
-# From coefficients of T_j(2s − 1) to those of s^j.
-_TO_POWERS = np.zeros((_POINTS, _POINTS))
-for _degree in range(_POINTS):
-    # T_j(2s − 1) = T_2j(√s).
-    _TO_POWERS[_degree, : _degree + 1] = chebyshev.cheb2poly(np.append(np.zeros(2 * _degree), 1.0))[::2]
 
 
 class Members(NamedTuple):
@@ -114,12 +108,12 @@ class Taylor:
     True
     """
 
-    angle: float = 4.0
+    angle: float = 6.0
     tolerance: float = 1e-12
 
     def __post_init__(self) -> None:
         # Larger terms would take digits with them when they cancel.
-        keep(self, angle=within("angle", self.angle, 0.01, 6.0))
+        keep(self, angle=within("angle", self.angle, 0.1, 6.0))
         keep(self, tolerance=within("tolerance", self.tolerance, 1e-16, 1e-2))
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
@@ -131,8 +125,9 @@ class Taylor:
         return Taylor(self.angle / 2.0, max(1e-3 * self.tolerance, 1e-16))
 
     def rounding(self, family: Family) -> float:
-        """See :class:`facegear.floquet.multipliers.Method`: terms up to e^angle cancel in each step."""
-        return float(np.exp(self.angle) / self.angle * family.exponent_norm)
+        """See :class:`facegear.floquet.multipliers.Method`: terms up to angle^k/k! cancel in each step."""
+        largest = self.angle**self.angle / math.gamma(1.0 + self.angle)
+        return float(largest / self.angle * family.exponent_norm)
 
     def over(self, family: Family, turns: FloatArray) -> FloatArray:
         """Scaled transition matrices of V systems at S periods each, nothing else being changed.
@@ -203,20 +198,36 @@ def _groups(norms: FloatArray) -> Iterator[NDArray[np.intp]]:
     """Numbers of cells that may have common steps."""
     order = np.argsort(-norms)
     while order.size:
-        count = int(np.count_nonzero(norms[order] >= _TOGETHER * norms[order[0]]))
+        count = max(_LANES, int(np.count_nonzero(norms[order] >= _TOGETHER * norms[order[0]])))
         yield order[:count]
         order = order[count:]
+
+
+@cache
+def _rule(count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points in [0, 1], and what makes coefficients of T_j(2s − 1) of values there, and powers of s of these."""
+    points = chebyshev.chebpts1(count)
+    to_powers = np.zeros((count, count))
+    for degree in range(count):
+        # T_j(2s − 1) = T_2j(√s).
+        to_powers[degree, : degree + 1] = chebyshev.cheb2poly(np.append(np.zeros(2 * degree), 1.0))[::2]
+    to_series = np.linalg.inv(chebyshev.chebvander(points, count - 1))
+    return (points + 1.0) / 2.0, np.asarray(to_series, dtype=float), to_powers
 
 
 def _steps(family: Family, left: FloatArray, back: FloatArray, fewest: float) -> Steps:
     """Lay polynomials through the coefficients on the steps of a period, at least so many."""
     loads, count = family.systems[0].loads, max(1, int(np.ceil(min(fewest, 2.0 * _MOST_STEPS))))
     ratio = float(family.scale[0, 0] / family.scale[family.size, family.size])
+    # Polynomials of so low a degree are met by as many points.
+    degrees = (2 * x.shape.degree + (0 if x.weight is None else x.weight.degree) for x in loads)
+    exact = max(degrees, default=0) + 1
+    points, to_series, to_powers = _rule(min(exact, _POINTS))
     while count <= _MOST_STEPS:
         edges = aligned_edges(family.breakpoints, count)
         lengths = np.diff(edges)
-        x = edges[:-1, np.newaxis] + lengths[:, np.newaxis] * (chebyshev.chebpts1(_POINTS) + 1.0) / 2.0
-        values = np.zeros((lengths.size, _POINTS, 2, len(loads), family.size, family.size))
+        x = edges[:-1, np.newaxis] + lengths[:, np.newaxis] * points
+        values = np.zeros((lengths.size, points.size, 2, len(loads), family.size, family.size))
         for number, load in enumerate(loads):
             phi = load.shape(x)
             force = (phi if load.weight is None else phi * load.weight(x)) @ left.T
@@ -224,14 +235,15 @@ def _steps(family: Family, left: FloatArray, back: FloatArray, fewest: float) ->
             if load.rate == "total":
                 slope = load.slope(x) @ back / ratio
                 values[:, :, 1, number] = force[..., :, np.newaxis] * slope[..., np.newaxis, :]
-        series = np.tensordot(values, _TO_SERIES, axes=(1, 1))
+        series = np.tensordot(values, to_series, axes=(1, 1))
         sizes = np.abs(values).max(axis=(0, 1, 4, 5), initial=0.0)[..., np.newaxis, np.newaxis, np.newaxis]
         sizes = np.where(sizes > 0.0, sizes, 1.0)
         parts = (np.abs(series) / sizes).max(axis=(0, 1, 2, 3, 4), initial=0.0)
         terms = int(np.flatnonzero(parts > _NOTHING).max(initial=0)) + 1
-        powers = series[..., :terms] @ _TO_POWERS[:terms, :terms]
+        powers = series[..., :terms] @ to_powers[:terms, :terms]
         cancelled = (np.abs(powers) / sizes).max(initial=0.0)
-        if parts[-2:].max() <= _RESOLVED and cancelled <= _CANCELLED:
+        resolved = exact <= _POINTS or parts[-2:].max() <= _RESOLVED
+        if resolved and cancelled <= _CANCELLED:
             dyads, slopes = np.moveaxis(powers, (1, -1), (0, 2))
             return Steps(lengths, np.ascontiguousarray(dyads), np.ascontiguousarray(slopes))
         count *= 2

@@ -12,15 +12,21 @@ from typing import Any
 
 import numpy as np
 
-from facegear.floquet.columns import agree, resolved
+from facegear.floquet.columns import LOWEST_DEGREE, LoadSweep, agree, resolved
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model, system_at
 from facegear.floquet.multipliers import FIRST, shift_by_rounding
-from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.periodic import LoadColumn, PeriodicSystem
+from facegear.floquet.series import ChebyshevSeries, chebyshev_basis, lobatto_coefficients
 from facegear.floquet.sheets import SHEET_TOLERANCE
 from facegear.floquet.stepping import Family
 from facegear.floquet.taylor import Taylor
-from facegear.maps.likeness import same_but_period, same_layout
+from facegear.maps.likeness import (
+    load_parameters_of,
+    same_but_load_parameters,
+    same_but_period,
+    same_layout,
+)
 from facegear.maps.parallel import parts_of
 from facegear.support.types import FloatArray
 
@@ -59,20 +65,52 @@ class _Chunk:
 
     def _matrices(self) -> FloatArray:
         """Transition matrices, (S, V, 2n, 2n): along the period, in which they are entire, as few as a series takes."""
-        family, turns = Family(self.systems), self.turns
+        turns = self.turns
+        family, of_all = self._members()
 
         def evaluate(some: FloatArray) -> FloatArray:
-            return _METHOD.over(family, some).swapaxes(0, 1)
+            found = _METHOD.over(family, some)
+            return (of_all @ found.reshape(len(found), -1)).reshape(-1, *found.shape[1:]).swapaxes(0, 1)
 
         degree = _DEGREE + int(0.5 * family.exponent_norm * np.ptp(turns))
         series = resolved(evaluate, turns, SHEET_TOLERANCE, degree)
-        if series is None:
-            return evaluate(turns)
-        found = series(turns)
+        found = evaluate(turns) if series is None else series(turns)
+        if series is None and len(of_all) == len(family.systems):
+            return found
         # Where a series is belied first: between its points, and where motions grow most.
-        size = np.abs(found).max(axis=(1, 2, 3))
-        chosen = np.unique([int(size.argmax()), *((0.382 * turns.size * np.array([1.0, 2.0])).astype(int))])
-        return found if agree(found[chosen], evaluate(turns[chosen])) else evaluate(turns)
+        size = np.abs(found).max(axis=(2, 3))
+        when, which = (
+            np.unique([largest, *(0.382 * count * np.array([1.0, 2.0])).astype(int)])
+            for count, largest in zip(size.shape, np.unravel_index(size.argmax(), size.shape), strict=True)
+        )
+        own = Family([self.systems[number] for number in which.tolist()])
+        back = family.scale @ own.inverse_scale
+        expected = back @ _METHOD.over(own, turns[when]).swapaxes(0, 1) @ np.linalg.inv(back)
+        if agree(found[np.ix_(when, which)], expected):
+            return found
+        return _METHOD.over(Family(self.systems), turns).swapaxes(0, 1)
+
+    def _members(self) -> tuple[Family, FloatArray]:
+        """Systems of which matrices are computed, and what makes those of all of them, (V, members).
+
+        Where only load parameters change, on a line, they are those at Chebyshev points of it.
+        """
+        systems, first = self.systems, self.systems[0]
+        if len(systems) > 4 * LOWEST_DEGREE and all(same_but_load_parameters(first, own) for own in systems):
+            parameters = np.array([load_parameters_of(own) for own in systems])
+            swept = LoadSweep.of(first, LoadColumn(*parameters.transpose(1, 0, 2)))
+            ends = float(swept.variable.min()), float(swept.variable.max())
+            degree = LOWEST_DEGREE
+            while swept.smooth and 4 * degree < len(systems):
+                loads = swept.at(ChebyshevSeries.points_of(*ends, degree))
+                each = zip(loads.mass, loads.damping, loads.stiffness, strict=True)
+                family = Family([first.replace_loads(mass=m, damping=c, stiffness=k) for m, c, k in each])
+                longest = _METHOD.over(family, self.turns[:1])[:, 0]
+                if ChebyshevSeries(*ends, longest).tail <= SHEET_TOLERANCE:
+                    of_points = lobatto_coefficients(np.eye(degree + 1))
+                    return family, chebyshev_basis(*ends, swept.variable, degree + 1) @ of_points
+                degree *= 2
+        return Family(systems), np.eye(len(systems))
 
 
 @dataclass(frozen=True, eq=False)

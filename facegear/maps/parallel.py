@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
+from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
@@ -26,9 +26,6 @@ from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
-
-if TYPE_CHECKING:
-    pass
 
 # Seconds of work from which on processes are started, which by itself takes a few.
 _WORTH_PROCESSES = 8.0
@@ -197,6 +194,8 @@ def _in_parallel(
         started = time.perf_counter()
         yield _on_one_thread(_run, *tasks[0])
         tasks = tasks[1:]
+        if not tasks:
+            return
         if len(tasks) * (time.perf_counter() - started) < _WORTH_PROCESSES:
             with one_thread():
                 yield from (_run(*task) for task in tasks)

@@ -57,6 +57,25 @@ def test_cells_are_interpolated_along_speed_where_that_takes_fewer(monkeypatch):
     assert np.abs(again - chart).max() < 1e-9
 
 
+def test_and_along_a_line_of_load_parameters(monkeypatch):
+    asked, over = [], module.Taylor.over
+    monkeypatch.setattr(
+        module.Taylor,
+        "over",
+        lambda own, family, turns: asked.append(len(family.systems)) or over(own, family, turns),
+    )
+    arguments = Mathieu(depth=0.4, damping_ratio=0.02), np.linspace(0.4, 2.6, 25), "depth"
+    chart = stability_map(*arguments, np.linspace(0.0, 0.95, 80), jobs=1, progress=False)
+    assert max(asked) < 20
+    check(arguments[0], chart, "depth", 12)
+    # On no line, each value has its own.
+    values = np.append(np.linspace(0.0, 0.9, 49), 0.95)
+    monkeypatch.setattr(module, "same_but_load_parameters", lambda one, other: False)
+    alone = stability_map(*arguments, values, jobs=1, progress=False)
+    assert max(asked) == 50
+    assert np.abs(alone[-1] - chart[-1]).max() < 1e-9
+
+
 @dataclass(frozen=True)
 class Own:
     """A model of one coordinate whose stiffness may depend on speed."""
