@@ -37,8 +37,9 @@ drive: environment ## facegear report on a drive of your own: make drive FILE=my
 test: environment ## run the tests (some minutes)
 	@$(PYTEST) -n 2 --dist loadfile -m 'not slow and not book'
 
+# One more than there are processors: these wait for kernels, signals and the browser now and then.
 test-slow: environment ## run the tests that take a minute each
-	@$(PYTEST) -n 2 --dist loadscope -m 'slow and not book'
+	@$(PYTEST) -n 3 --dist loadscope -m 'slow and not book'
 
 test-kernel: environment ## run the tests as on another processor
 	@$(PYTHON) tools/test_kernel.py -n 2 --dist loadfile -m 'not slow and not book'
@@ -47,7 +48,7 @@ test-lowest: environment ## run the tests with the oldest versions that pyprojec
 	@$(PYTHON) tools/test_lowest.py -n 2 --dist loadfile -m 'not slow and not book'
 
 test-book: environment ## look at the built book in Chromium (make book first)
-	@$(PYTEST) -n 2 --dist loadscope -m book tests/book
+	@$(PYTEST) -n 3 --dist loadscope -m book tests/book
 
 lint: environment ## check style, types, import order, notebooks
 	$(PYTHON) -m ruff check .

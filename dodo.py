@@ -47,17 +47,17 @@ NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 CHAPTERS = [path.stem for path in NOTEBOOKS if path.stem < "90"]
 # Started first, the longest before the others, so that two processors end at about the same time.
 LONGEST = (
+    "08_transverse",
     "04_design",
     "03_contact_under_load",
-    "08_transverse",
-    "04_one_pinion",
     "05_multiple_pinions",
+    "04_one_pinion",
     "06_in_plane_force",
+    "08_shafts",
     "07_torsional",
+    "08_damage",
     "your_drive",
     "08_torsional",
-    "08_shafts",
-    "08_damage",
 )
 IN_ORDER = [
     *(path for stem in LONGEST for path in NOTEBOOKS if path.stem == stem),

@@ -23,6 +23,7 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue, tongues
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import integer_at_least, rpm
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 # Relative step of parameters and speeds in the differences. At a border the critical multiplier leaves the unit circle
@@ -168,6 +169,7 @@ def _by_speed(model: Model, speed: float) -> float:
     return (above - below) / (2 * step)
 
 
+@one_thread()
 def effects_of_changes(
     model: Model,
     found: Sequence[Tongue],

@@ -34,6 +34,7 @@ from facegear.mechanics.plate import Body
 from facegear.mechanics.spread_force import RIM_POINT, Spread, points_on
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import ascending, nonnegative, within
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 # Powers, over the critical one of the disk alone, at which a disk is tried.
@@ -117,6 +118,7 @@ def disk_growth_rate(
     return float(natural_exponents(np.eye(len(stiffness)), damping, stiffness).real.max())
 
 
+@one_thread()
 def critical_power(
     body: Body,
     pinion_speed: float,
@@ -205,6 +207,7 @@ class PowerLimit:
     label: str
 
 
+@one_thread()
 def largest_power(model: Transverse, speeds: ArrayLike, *, tolerance: float = 1e-3) -> PowerLimit:
     """Largest power below which a drive is stable at all speeds of a range.
 

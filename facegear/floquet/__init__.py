@@ -8,7 +8,7 @@ systems; `modes` has natural motions, `labels` names what is unstable; `modal`, 
 approximations, `hill` the harmonic balance of motions. `response` has the steady motion that forces cause, along the
 panels of `motion`. Systems whose loads act in contact only are those of `clearance`: `orbits` has their periodic
 motions, on the panels of `contact_panels`, `continuation` the families of these along a parameter, `transients` where
-other motions end.
+other motions end, compiled in `lockstep_transients` where Numba is installed.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*

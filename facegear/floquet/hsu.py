@@ -36,6 +36,7 @@ from facegear.floquet.modal import ModalExpansion, modal_expansion
 from facegear.floquet.models import Model
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import ascending, integer_at_least, nonnegative
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 Kind = Literal["sum", "difference"]
@@ -180,6 +181,7 @@ def resonance_bands(
     return tuple(sorted(_without_repeats(bands), key=lambda band: (band.centre, band.label)))
 
 
+@one_thread()
 def band_speeds(
     model: Model,
     speeds: tuple[float, float],

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol, TypeVar
 
 import numpy as np
@@ -561,26 +562,27 @@ def disturbed(scaled: FloatArray, family: Family, method: Method) -> FloatArray:
     another, that is more than Φ itself shows. The changes are always the same ones.
     """
     size = scaled.shape[-1]
-    rng = np.random.default_rng(0)
-    changed = scaled + rounding_error(scaled, family, method) * _changes(rng, size)
     (stretches,), (jumps,) = family.stretches(_STRETCHES)
+    whole, *parts = _changes(size, len(stretches) + 1)
+    changed = scaled + rounding_error(scaled, family, method) * whole
     places = size + method.rounding(family) / len(stretches)
     arriving, lost = np.eye(size), np.zeros_like(changed)
     with np.errstate(over="ignore", invalid="ignore"):
-        for stretch, jump in zip(stretches, jumps, strict=True):
+        for stretch, jump, part in zip(stretches, jumps, parts, strict=True):
             added = np.abs(stretch) @ np.abs(arriving)
             if jump > 0.0:
                 added += jump * np.abs(arriving).max()
-            lost = stretch @ lost + added * _changes(rng, size)
+            lost = stretch @ lost + added * part
             arriving = stretch @ arriving
         lost *= places * np.finfo(float).eps
     # Frozen motions may grow beyond double precision where those of the system do not.
     return np.asarray(changed + lost if np.isfinite(lost).all() else changed, dtype=float)
 
 
-def _changes(rng: np.random.Generator, size: int) -> FloatArray:
-    """Random matrices of unit norm, shape (4, size, size)."""
-    changes = rng.normal(size=(_CHANGES, size, size))
+@lru_cache(maxsize=64)
+def _changes(size: int, count: int) -> FloatArray:
+    """Random matrices of unit norm, always the same ones, shape (count, 4, size, size)."""
+    changes = np.random.default_rng(0).normal(size=(count, _CHANGES, size, size))
     return np.asarray(changes / np.linalg.norm(changes, 2, axis=(-2, -1), keepdims=True), dtype=float)
 
 

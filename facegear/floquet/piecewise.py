@@ -7,11 +7,14 @@ fraction x = t / T0 of the period, and each smooth piece has its own Chebyshev s
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from inspect import signature
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -30,6 +33,10 @@ SAME_INSTANT = 1e-12
 _FEWEST = 9
 # Evenly spaced places in [-1, 1], none a Chebyshev point, at which a series must meet its function in the end.
 _CHECKED = np.arange(-31.0, 32.0, 2.0) / 32.0
+# Places from which on a recurrence over degrees is quicker than a cosine for each.
+_MANY = 50
+# Values at no more fractions than this are remembered for a while.
+_REMEMBERED = 1024
 # By so much it may miss it there, in units of the size that its last coefficients may have.
 _LEEWAY = 100.0
 
@@ -44,6 +51,21 @@ def _coefficients(values: FloatArray) -> FloatArray:
 def _chebyshev_basis(x: FloatArray, degree: int) -> FloatArray:
     """T_0 ... T_degree at x in [-1, 1], shape (len(x), degree + 1)."""
     return np.cos(np.arange(degree + 1) * np.arccos(np.clip(x, -1.0, 1.0))[:, None])
+
+
+def _ascending_basis(x: FloatArray, degree: int) -> FloatArray:
+    """T_0 ... T_degree at x in [-1, 1], shape (degree + 1, len(x)); at many by the recurrence, which is quicker."""
+    if x.size < _MANY and degree > 1:
+        return _chebyshev_basis(x, degree).T
+    x = np.clip(x, -1.0, 1.0)
+    basis = np.ones((degree + 1, x.size))
+    if degree > 0:
+        basis[1] = x
+    twice = 2.0 * x
+    for number in range(2, degree + 1):
+        np.multiply(twice, basis[number - 1], out=basis[number])
+        basis[number] -= basis[number - 2]
+    return basis
 
 
 def wrap(fraction: FloatArray) -> FloatArray:
@@ -264,19 +286,51 @@ class PiecewiseChebyshev:
         array, shape (..., components)
         """
         one_of("side", side, ("right", "left"))
+        one: object = fraction
+        if isinstance(one, float) and math.isfinite(one):
+            return self._at(float(one), side)
         asked = finite_array("fraction", fraction)
-        wrapped = wrap(asked.ravel())
+        if asked.size > _REMEMBERED:
+            return self._along(asked, side)
+        return _evaluated(self, asked.tobytes(), side).reshape(*asked.shape, self.components).copy()
+
+    def _along(self, asked: FloatArray, side: Side) -> FloatArray:
+        """Values at many fractions."""
+        flat = asked.ravel()
+        within = flat.size > 0 and flat.min() >= 0.0 and flat.max() <= 1.0 - SAME_INSTANT
+        wrapped = flat if within else wrap(flat)
         nudge = SAME_INSTANT if side == "right" else -SAME_INSTANT
         # Before the first breakpoint one is still on the last piece of the period before, number -1.
         piece = np.searchsorted(self.breakpoints, wrapped + nudge, side="right") - 1
+        changes = np.flatnonzero(piece[1:] != piece[:-1]) + 1
+        if changes.size > 2 * self.breakpoints.size:  # in no order
+            order = np.argsort(piece, kind="stable")
+            values = np.empty((wrapped.size, self.components))
+            values[order] = self._along(wrapped[order], side)
+            return values.reshape(*asked.shape, self.components)
         offset = wrapped - self.breakpoints[piece] + (piece < 0)
-        basis = _chebyshev_basis(2.0 * offset / self.lengths[piece] - 1.0, self.degree)
+        basis = _ascending_basis(2.0 * offset / self.lengths[piece] - 1.0, self.degree)
         values = np.empty((wrapped.size, self.components))
-        order = np.argsort(piece, kind="stable")
-        for chosen in np.split(order, np.flatnonzero(np.diff(piece[order])) + 1):
-            if chosen.size:
-                values[chosen] = basis[chosen] @ self.coefficients[piece[chosen[0]]]
+        for begin, end in pairwise([0, *changes.tolist(), wrapped.size]):
+            if end > begin:
+                values[begin:end] = basis[:, begin:end].T @ self.coefficients[piece[begin]]
         return values.reshape(*asked.shape, self.components)
+
+    def _at(self, fraction: float, side: Side) -> FloatArray:
+        """Value at one fraction: in plain numbers, for integrators ask thousands of times."""
+        starts, lengths, degrees = self._plain
+        x = fraction % 1.0
+        if x > 1.0 - SAME_INSTANT:
+            x = 0.0
+        piece = bisect_right(starts, x + (SAME_INSTANT if side == "right" else -SAME_INSTANT)) - 1
+        offset = x - starts[piece] + (piece < 0)
+        angle = math.acos(min(1.0, max(-1.0, 2.0 * offset / lengths[piece] - 1.0)))
+        return np.asarray(np.cos(angle * degrees) @ self.coefficients[piece], dtype=float)
+
+    @cached_property
+    def _plain(self) -> tuple[list[float], list[float], FloatArray]:
+        """Breakpoints, lengths of the pieces, and 0 ... degree."""
+        return self.breakpoints.tolist(), self.lengths.tolist(), np.arange(self.degree + 1.0)
 
     def derivative(self, order: int = 1) -> PiecewiseChebyshev:
         """Exact derivative with respect to the fraction of the period, piece by piece (jumps left out)."""
@@ -336,6 +390,12 @@ class PiecewiseChebyshev:
         right: FloatArray = np.einsum("d,pdn->pn", signs, self.coefficients)
         left: FloatArray = np.roll(self.coefficients.sum(axis=1), 1, axis=0)
         return right - left
+
+
+@lru_cache(maxsize=128)
+def _evaluated(function: PiecewiseChebyshev, fractions: bytes, side: Side) -> FloatArray:
+    """Values at fractions: the systems of a family, and those of one tongue, are asked for at the same ones."""
+    return function._along(np.frombuffer(fractions), side)
 
 
 @dataclass(frozen=True, eq=False)

@@ -142,11 +142,13 @@ class SteadyResponse:
         )
         # The integral of P_d(z) e^{−iaz} over [−1, 1] is 2 (−i)^d j_d(a), for any order.
         turning = lengths * np.exp(-2j * np.pi * s * (self.state.breakpoints + lengths / 2.0))
-        amplitudes = sum(
-            (2.0 * (-1j) ** d * turning * spherical_jn(d, np.pi * s * lengths)) @ series[:, d]
-            for d in degrees.tolist()
-        )
-        found = np.asarray(amplitudes, dtype=complex)
+        found = np.zeros((s.size, 2 * self.system.size), dtype=complex)
+        own, number = _distinct(lengths)
+        for which, length in enumerate(own.tolist()):
+            panels = number == which
+            moments = np.tensordot(turning[:, panels], series[panels], axes=1)
+            factors = 2.0 * (-1j) ** degrees * spherical_jn(degrees, np.pi * s * length)
+            found += np.einsum("sd,sdn->sn", factors, moments)
         found[0] /= 2.0
         return found
 
@@ -178,6 +180,18 @@ class SteadyResponse:
         lengths = self.state.lengths[:, np.newaxis]
         instants = self.state.breakpoints[:, np.newaxis] + lengths * (1.0 + x) / 2.0
         return instants.ravel(), (lengths * weights / 2.0).ravel()
+
+
+def _distinct(lengths: FloatArray) -> tuple[FloatArray, NDArray[np.intp]]:
+    """Lengths of panels that differ by more than rounding, and which of them each panel has.
+
+    A revolution of many mesh periods has hundreds of panels and a few lengths.
+    """
+    order = np.argsort(lengths)
+    new = np.diff(lengths[order], prepend=-1.0) > 4.0 * np.finfo(float).eps
+    number = np.empty(lengths.size, dtype=np.intp)
+    number[order] = np.cumsum(new) - 1
+    return lengths[order][new], number
 
 
 @lru_cache(maxsize=8)

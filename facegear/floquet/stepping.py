@@ -252,13 +252,17 @@ class Family:
 
     def state_matrices(self, fraction: FloatArray, side: Side = "right") -> FloatArray:
         """T0 S A S⁻¹ at fractions (m,), shape (V, m, 2n, 2n)."""
+        return self.state_of(self.assembled(fraction, side), fraction.size)
+
+    def state_of(self, matrices: tuple[FloatArray, FloatArray, FloatArray], instants: int) -> FloatArray:
+        """T0 S A S⁻¹ from M(t), C(t), K(t) of :meth:`assembled` at so many instants."""
         n = self.size
-        mass, damping, stiffness = self.assembled(fraction, side)
+        mass, damping, stiffness = matrices
         inverse = np.linalg.inv(mass)
         scale, back = self.scale[n:, n:], self.inverse_scale[n:, n:]
         left = -self.periods[:, None, None, None] * (scale @ inverse)
         ratio = self.scale[0, 0] / self.scale[n, n]
-        state = np.zeros((len(self.systems), fraction.size, 2 * n, 2 * n))
+        state = np.zeros((len(self.systems), instants, 2 * n, 2 * n))
         state[..., :n, n:] = (self.periods * ratio)[:, None, None, None] * np.eye(n)
         state[..., n:, :n] = left @ stiffness @ (back / ratio)
         state[..., n:, n:] = left @ damping @ back

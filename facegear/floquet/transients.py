@@ -7,6 +7,8 @@ initial states. Steps end at the breakpoints of the system, not at contacts: err
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -112,6 +114,16 @@ class _Field:
         last = self.rate(step, 2, states + h * third)
         return np.asarray(states + h / 6.0 * (first + 2.0 * (second + third) + last))
 
+    def followed(self, states: FloatArray, periods: int, kept: int) -> FloatArray:
+        """States at the end of each of the last periods, (kept, m, 2n)."""
+        found = []
+        for number in range(periods):
+            for step in range(self.lengths.size):
+                states = self.advanced(step, states)
+            if number >= periods - kept:
+                found.append(states)
+        return np.array(found)
+
 
 def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int = 1) -> FloatArray:
     """Follow many motions for some periods.
@@ -144,13 +156,23 @@ def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int 
     n = system.size
     if start.ndim != 2 or start.shape[1] != 2 * n:
         raise ValueError(f"states must have shape (m, {2 * n}), got shape {start.shape}")
-    field, found = _Field.of(system), []
-    for number in range(count):
-        for step in range(field.lengths.size):
-            start = field.advanced(step, start)
-        if number >= count - kept:
-            found.append(start)
-    return np.array(found)
+    field = _Field.of(system)
+    if (compiled := _compiled()) is not None:
+        ends = np.empty((kept, *start.shape))
+        stages = (np.ascontiguousarray(x) for x in (field.lengths, field.reading, field.known, field.row))
+        compiled.follow(*stages, np.ascontiguousarray(start), ends, count)
+        return ends
+    return field.followed(start, count, kept)
+
+
+@cache
+def _compiled() -> ModuleType | None:
+    """Return the compiled code, or None where there is no Numba for this NumPy, or no place to keep its work."""
+    try:
+        from facegear.floquet import lockstep_transients
+    except (ImportError, RuntimeError):
+        return None
+    return lockstep_transients
 
 
 def contacts_along(system: ClearanceSystem, state: FloatArray) -> Pattern:

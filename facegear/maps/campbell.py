@@ -16,6 +16,7 @@ from facegear.floquet.models import Model, require_model, system_at
 from facegear.floquet.modes import NaturalMotions
 from facegear.maps.stability_map import checked_speeds
 from facegear.support.parameters import integer_within, positive
+from facegear.support.threads import one_thread
 from facegear.support.types import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ class _Motions:
         return np.asarray(np.abs(self.amplitudes @ other.states))
 
 
+@one_thread()
 def campbell(model: Model, speeds: ArrayLike, *, harmonics: int = 3) -> xarray.Dataset:
     """Natural frequencies and damping of the mean system over speed, each motion followed through crossings.
 

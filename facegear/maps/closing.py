@@ -19,6 +19,7 @@ from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.multipliers import Method
 from facegear.maps.peaks import Peak, critical_value, largest_between
 from facegear.support.parameters import ascending, finite_array
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 # Speeds at which the growth is looked at before its largest values are refined.
@@ -80,6 +81,7 @@ class GrowthPeaks:
     closing_values: tuple[ClosingValue, ...]
 
 
+@one_thread()
 def largest_growth(model: Model, speeds: ArrayLike, method: Method | None = None) -> tuple[float, float]:
     """Find the largest growth rate of a model in a range of speed, whether it is positive or not.
 

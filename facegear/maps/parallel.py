@@ -17,17 +17,15 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
+from typing import Any, Literal, Protocol, TypeVar
 
 import numpy as np
 
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.parameters import number_of_workers
 from facegear.support.provenance import code_digest
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
-
-if TYPE_CHECKING:
-    from threadpoolctl import ThreadpoolController
 
 # Seconds of work from which on processes are started, which by itself takes a few.
 _WORTH_PROCESSES = 8.0
@@ -151,16 +149,8 @@ def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]
 def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
     _begin_as_worker()
-    with _pools().limit(limits=1):
+    with one_thread():
         return function(*arguments)
-
-
-@cache
-def _pools() -> ThreadpoolController:
-    """Find the libraries of this process that have threads of their own, which takes as long as a small map."""
-    from threadpoolctl import ThreadpoolController
-
-    return ThreadpoolController()
 
 
 @cache
@@ -207,14 +197,14 @@ def _in_parallel(
         if not tasks:
             return
         if len(tasks) * (time.perf_counter() - started) < _WORTH_PROCESSES:
-            with _pools().limit(limits=1):
+            with one_thread():
                 yield from (_run(*task) for task in tasks)
             return
     if together:
         # Threads share one limit: set before the first, or each would restore what another has set.
         here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
         work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
-        with _pools().limit(limits=1):
+        with one_thread():
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
             )

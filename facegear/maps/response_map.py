@@ -22,6 +22,7 @@ from facegear.floquet.response import SteadyResponse, steady_response
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.stability_map import checked_speeds, checked_values, speed_coordinates
 from facegear.support.parameters import number_of_workers
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ _HARMONICS = 6
 _NOISE = 1e-10
 
 
+@one_thread()
 def frequency_response(
     model: Model,
     speeds: ArrayLike,
@@ -110,6 +112,7 @@ def frequency_response(
     return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], method))
 
 
+@one_thread()
 def response_map(
     model: Model,
     speeds: ArrayLike,

@@ -19,13 +19,14 @@ from typing import Any
 
 import numpy as np
 
-from facegear.floquet.models import Model, replace_parameter, value_of
+from facegear.floquet.models import Model, parameter_path, replace_at, value_of
 from facegear.floquet.multipliers import Method, with_method
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import Side
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import integer_at_least, positive
+from facegear.support.threads import one_thread
 from facegear.support.types import ComplexArray, FloatArray
 
 SPEED = "speed"
@@ -98,20 +99,25 @@ def system_derivative(model: Model, speed: float, parameter: str) -> SystemDeriv
         )
     half = _REACH * abs(value)
     nodes = ChebyshevSeries.points_of(value - half, value + half, _NODES - 1).tolist()
-    present = _system(model, speed, parameter, value)
-    systems = [_system(model, speed, parameter, node) for node in nodes]
+    # Which field it is takes longer to find than to replace.
+    path = () if parameter == SPEED else parameter_path(model, parameter)
+    systems = [_system(model, speed, path, node) for node in nodes]
+    present = systems[_NODES // 2]
     for system in systems:
         _same_shapes(present, system, parameter)
 
     def derivative(name: str, parts: Sequence[Any]) -> FloatArray:
-        series = ChebyshevSeries(value - half, value + half, np.array(parts, dtype=float))
+        values = np.array(parts, dtype=float)
+        # Rounding alone is no dependence.
+        constant = (values == values[0]).all(axis=0)
+        if constant.all():
+            return np.zeros(values.shape[1:])
+        series = ChebyshevSeries(value - half, value + half, values)
         sizes = np.abs(series.coefficients)
         if sizes[-2:].max() > _TAIL * sizes.max():
             raise ArithmeticError(
                 f"{name} does not vary smoothly with {parameter} within {100 * _REACH:.0f} % of {value:.6g}"
             )
-        # Rounding alone is no dependence.
-        constant = (series.values == series.values[0]).all(axis=0)
         return np.where(constant, 0.0, series.derivative(value))
 
     def of_loads(name: str) -> FloatArray:
@@ -140,10 +146,9 @@ def parameter_value(model: Model, speed: float, parameter: str) -> float:
     return value_of(model, parameter)
 
 
-def _system(model: Model, speed: float, parameter: str, value: float) -> PeriodicSystem:
-    if parameter == SPEED:
-        return model.system(value)
-    return replace_parameter(model, parameter, value).system(speed)
+def _system(model: Model, speed: float, path: tuple[str, ...], value: float) -> PeriodicSystem:
+    """System with the parameter at the end of a path replaced, or the speed for an empty one."""
+    return replace_at(model, path, value).system(speed) if path else model.system(value)
 
 
 def _same_shapes(first: PeriodicSystem, second: PeriodicSystem, parameter: str) -> None:
@@ -191,46 +196,51 @@ class _VariedFamily(Family):
         """Return [[B, 0], [dB/d ln p, B]] in scaled coordinates, shape (P, m, 4n, 4n)."""
         single = self._single
         n = single.size
-        plain = single.state_matrices(fraction, side)[0]
+        matrices = single.assembled(fraction, side)
+        plain = single.state_of(matrices, fraction.size)[0]
         blocks = np.zeros((len(self._derivatives), fraction.size, 4 * n, 4 * n))
         blocks[..., : 2 * n, : 2 * n] = plain
         blocks[..., 2 * n :, 2 * n :] = plain
-        changes = self._changes(fraction, side)
-        for number, value in enumerate(self._values):
-            blocks[number, :, 2 * n :, : 2 * n] = value * (
-                single.scale @ changes[number] @ single.inverse_scale
-            )
+        changes = self._values[:, None, None, None] * self._changes(matrices, fraction, side)
+        blocks[..., 2 * n :, : 2 * n] = single.scale @ changes @ single.inverse_scale
         return blocks
 
-    def _changes(self, fraction: FloatArray, side: Side) -> FloatArray:
-        """d(T0 A)/dp of each parameter at fractions (m,), shape (P, m, 2n, 2n)."""
-        system = self._single.systems[0]
+    def _changes(
+        self, matrices: tuple[FloatArray, FloatArray, FloatArray], fraction: FloatArray, side: Side
+    ) -> FloatArray:
+        """d(T0 A)/dp of each parameter at fractions (m,), from M, C and K there, shape (P, m, 2n, 2n)."""
+        system, count = self._single.systems[0], len(self._derivatives)
         n, period = system.size, system.period
-        mass, damping, stiffness = (
-            np.broadcast_to(part[0], (fraction.size, n, n)) for part in self._single.assembled(fraction, side)
-        )
+        mass, damping, stiffness = (np.broadcast_to(part[0], (fraction.size, n, n)) for part in matrices)
         inverse = np.linalg.inv(mass)
         accelerations = inverse @ np.concatenate([stiffness, damping], axis=-1)
-        dyads = [_dyads(load, fraction, side) for load in system.loads]
-        result = np.zeros((len(self._derivatives), fraction.size, 2 * n, 2 * n))
-        for number, by in enumerate(self._derivatives):
-            d_mass, d_damping, d_stiffness = (
-                np.broadcast_to(matrix, mass.shape).copy() for matrix in (by.mass, by.damping, by.stiffness)
-            )
-            # φ̇ = φ'/T0 and φ̈ = φ''/T0² change with the period too.
-            shorter = by.period / period
-            for i, (load, (plain, slope, bend)) in enumerate(zip(system.loads, dyads, strict=True)):
-                dm, dc, dk = by.load_mass[i], by.load_damping[i], by.load_stiffness[i]
-                d_mass += dm * plain
-                d_damping += dc * plain
-                d_stiffness += dk * plain
-                if load.rate == "total":
-                    d_stiffness += (dc - load.damping * shorter) / period * slope
-                    d_damping += 2.0 * (dm - load.mass * shorter) / period * slope
-                    d_stiffness += (dm - 2.0 * load.mass * shorter) / period**2 * bend
-            changed = np.concatenate([d_stiffness, d_damping], axis=-1) - d_mass @ accelerations
-            result[number, :, :n, n:] = by.period * np.eye(n)
-            result[number, :, n:, :] = -by.period * accelerations - period * inverse @ changed
+
+        def of_each(name: str) -> FloatArray:
+            """One kind of derivatives by each parameter, shape (P, ...)."""
+            return np.array([getattr(by, name) for by in self._derivatives], dtype=float)
+
+        d_mass, d_damping, d_stiffness = (
+            np.repeat(of_each(name)[:, None], fraction.size, axis=1)
+            for name in ("mass", "damping", "stiffness")
+        )
+        d_period = of_each("period")[:, None, None, None]
+        # φ̇ = φ'/T0 and φ̈ = φ''/T0² change with the period too.
+        shorter = d_period / period
+        of_loads = [of_each(f"load_{name}") for name in ("mass", "damping", "stiffness")]
+        for i, load in enumerate(system.loads):
+            plain, slope, bend = _dyads(load, fraction, side)
+            dm, dc, dk = (part[:, i, None, None, None] for part in of_loads)
+            d_mass += dm * plain
+            d_damping += dc * plain
+            d_stiffness += dk * plain
+            if load.rate == "total":
+                d_stiffness += (dc - load.damping * shorter) / period * slope
+                d_damping += 2.0 * (dm - load.mass * shorter) / period * slope
+                d_stiffness += (dm - 2.0 * load.mass * shorter) / period**2 * bend
+        changed = np.concatenate([d_stiffness, d_damping], axis=-1) - d_mass @ accelerations
+        result = np.zeros((count, fraction.size, 2 * n, 2 * n))
+        result[..., :n, n:] = d_period * np.eye(n)
+        result[..., n:, :] = -d_period * accelerations - period * inverse @ changed
         return result
 
 
@@ -313,6 +323,7 @@ class Sensitivity:
         return np.asarray((self.multiplier_derivatives / self.multiplier).real, dtype=float)
 
 
+@one_thread()
 def sensitivity(
     model: Model, speed: float, parameters: Sequence[str], method: Method | None = None
 ) -> Sensitivity:

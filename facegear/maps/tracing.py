@@ -24,6 +24,7 @@ from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
 from facegear.support.parameters import ascending, finite_array, number_of_workers, within
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
 _KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -138,15 +139,13 @@ def tongues(
         raise ValueError(f"hints must list speeds in rad/s, got {hints!r}")
     if threshold < _DRIFT:
         _refuse_rigid_motion(system_at(model, high))
-    from threadpoolctl import threadpool_limits
     from tqdm.auto import tqdm
 
     # tqdm itself takes a notebook for a terminal.
     shown = sys.stderr.isatty() if progress is None else progress
     about = f"tongues, about {search_seconds(model, (low, high)):.0f} s" if shown else ""
-    # Matrices are too small to share among threads, which would wait for each other.
     with (
-        threadpool_limits(limits=1),
+        one_thread(),
         tqdm(desc=about, unit=" matrices", disable=not shown, leave=False) as bar,
     ):
         curve = MultiplierCurve.of(model, low, high, method, bar.update)

@@ -85,6 +85,8 @@ def finite(name: str, value: Any, unit: str = "") -> float:
     ValueError
         NaN or infinite.
     """
+    if type(value) is float and math.isfinite(value):  # as nearly all are
+        return value
     if isinstance(value, _NO_NUMBERS) or not isinstance(value, Real):
         raise TypeError(f"{name} must be a real number{_in(unit)}, got {_plain(value)!r}")
     try:
@@ -260,6 +262,8 @@ def finite_array(name: str, values: ArrayLike, unit: str = "") -> FloatArray:
 
 def _real_array(name: str, values: Any, unit: str = "") -> FloatArray:
     """Values as a new array of float64, infinite and undefined ones among them."""
+    if type(values) is np.ndarray and values.dtype == np.float64:  # as nearly all are
+        return np.array(values)
     try:
         array = np.asarray(values)
     except ValueError:  # rows of different lengths

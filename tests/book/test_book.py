@@ -141,14 +141,14 @@ def address(request: pytest.FixtureRequest) -> str:
 def look(
     server: str, contexts: dict[str, BrowserContext], address: str
 ) -> Iterator[Callable[[int, str], Visit]]:
-    """Show the page at hand, which is opened three times: light on a telephone and on a desk, dark on a wide screen.
+    """Show the page at hand, which is opened twice: light on a telephone, dark on a wide screen.
 
-    The dark one is then made as narrow as wanted, the way a window is or a telephone that is turned.
+    From there it is made as wide or narrow as wanted, the way a window is or a telephone that is turned.
     """
     opened: dict[tuple[int, str], Visit] = {}
 
     def show(width: int, scheme: str) -> Visit:
-        first_width = WIDEST if scheme == "dark" else width
+        first_width = WIDEST if scheme == "dark" else NARROWEST
         key = first_width, scheme
         if key not in opened:
             opened[key] = opened_page(contexts[scheme], server, address, first_width)
@@ -163,12 +163,13 @@ def look(
         visit.page.close()
 
 
-WIDEST = 1920
+NARROWEST, WIDEST = 375, 1920
 TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done())))"
 
 
 @pytest.mark.parametrize(
-    ("width", "scheme"), [(375, "light"), (1440, "light"), (WIDEST, "dark"), (768, "dark"), (375, "dark")]
+    ("width", "scheme"),
+    [(NARROWEST, "light"), (1440, "light"), (WIDEST, "dark"), (768, "dark"), (NARROWEST, "dark")],
 )
 def test_page_is_whole_and_readable(look: Callable[[int, str], Visit], width: int, scheme: str) -> None:
     opened = look(width, scheme)

@@ -280,7 +280,15 @@ def test_several_periods():
     np.testing.assert_allclose(again.start, once.start, atol=1e-10)
 
 
-def test_transients_settle_on_the_stable_orbit():
+@pytest.fixture(params=["compiled", "NumPy"])
+def route(request, monkeypatch):
+    if request.param == "compiled":
+        pytest.importorskip("facegear.floquet.lockstep_transients", exc_type=ImportError)
+    else:
+        monkeypatch.setattr("facegear.floquet.transients._compiled", lambda: None)
+
+
+def test_transients_settle_on_the_stable_orbit(route):
     system = gear_pair(0.6)
     orbit = periodic_orbit(system, guess=settled(system, [[1.2, 0.0]], 80)[0, 0])
     assert orbit.is_stable
@@ -290,6 +298,21 @@ def test_transients_settle_on_the_stable_orbit():
     assert ends.shape == (2, 20, 2)
     # Runge-Kutta steps that meet contacts anywhere: a ten thousandth.
     assert np.abs(ends - orbit.start).max() < 1e-4
+
+
+@pytest.mark.parametrize(
+    "system", [gear_pair(0.6, contact_damping=0.02), meshing()], ids=["gear pair", "meshing"]
+)
+def test_compiled_steps_are_those_of_numpy(system, monkeypatch):
+    """Through contacts on both sides; differences of rounding grow with motions from period to period."""
+    pytest.importorskip("facegear.floquet.lockstep_transients", exc_type=ImportError)
+    states = 2.0 * np.random.default_rng(3).uniform(-1.0, 1.0, (5, 2 * system.size))
+    compiled = settled(system, np.asfortranarray(states), 6, kept=3)
+    monkeypatch.setattr("facegear.floquet.transients._compiled", lambda: None)
+    expected = settled(system, states, 6, kept=3)
+    assert compiled.shape == expected.shape == (3, 5, 2 * system.size)
+    np.testing.assert_allclose(compiled, expected, rtol=0.0, atol=1e-10)
+    assert np.abs(expected - states).max() > 0.1
 
 
 LINEAR = meshing().system

@@ -267,6 +267,16 @@ def test_harmonics_of_any_order_are_those_of_the_motion():
         assert response.harmonics(60)[s, 0] == pytest.approx(expected, abs=1e-10)
 
 
+def test_harmonics_of_many_periods_are_those_of_one():
+    """Panels of seven periods have the lengths of those of one, but for rounding."""
+    saw = PiecewiseChebyshev.fit(lambda x, _: x - 0.5, [0.3])
+    system = oscillator(force=saw)
+    one, seven = (steady_response(system.repeated(number)).harmonics(7 * 12) for number in (1, 7))
+    np.testing.assert_allclose(seven[::7], one[:13], rtol=0.0, atol=1e-13 * np.abs(one).max())
+    between = np.arange(7 * 12 + 1) % 7 > 0
+    assert np.abs(seven[between]).max() < 1e-12 * np.abs(one).max()
+
+
 def test_statistics_of_a_load_too_weak_to_move_the_system():
     """Its transmission error is resolved although the state does not feel it."""
     error = PiecewiseChebyshev.fit(

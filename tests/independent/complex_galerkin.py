@@ -8,6 +8,7 @@ and the contact centroid comes in as a plain function of time.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -305,7 +306,8 @@ def oscillator_multipliers(
                     [start, end],
                 )
                 own = slice(*(n // len(turning) * np.array([spring.disk, spring.disk + 1])))
-                tables.append((spring.pinion, own, weight, *_shape_series(disk, spring.place, start, end)))
+                share = _summed(weight.coef, start, end)
+                tables.append((spring.pinion, own, share, *_shape_series(disk, spring.place, start, end)))
 
         def rates(t: float, flat: np.ndarray, tables=tables) -> np.ndarray:
             Y = flat.reshape(2 * (n + count), -1) / scale[:, None]
@@ -343,11 +345,18 @@ def _shape_series(disk: ComplexDisk, pinion: Pinion, start: float, end: float):
     series = np.linalg.solve(chebyshev.chebvander(points, 80), values)
     assert np.abs(series[-4:]).max() < 1e-12 * np.abs(series).max(), "the shape is not smooth on a piece"
     slopes = chebyshev.chebder(series) * 2 / (end - start)
+    return _summed(series, start, end), _summed(slopes, start, end)
 
-    def at(coefficients: np.ndarray) -> Callable[[float], np.ndarray]:
-        return lambda x: chebyshev.chebval((2 * x - start - end) / (end - start), coefficients)
 
-    return at(series), at(slopes)
+def _summed(coefficients: np.ndarray, start: float, end: float) -> Callable[[float], np.ndarray]:
+    """Σ c_k T_k at one t/T0, by T_k = cos(k arccos x): the usual recurrence of eighty steps takes ten times as long."""
+    degrees = np.arange(len(coefficients))
+
+    def at(fraction: float) -> np.ndarray:
+        local = min(1.0, max(-1.0, (2 * fraction - start - end) / (end - start)))
+        return np.cos(degrees * math.acos(local)) @ coefficients
+
+    return at
 
 
 def first_order_growth(
@@ -403,7 +412,7 @@ def first_order_growth(
 
 def _radial_tables(
     disk: ComplexDisk, pinion: Pinion, start: float, end: float
-) -> tuple[Callable[[float], np.ndarray], chebyshev.Chebyshev]:
+) -> tuple[Callable[[float], np.ndarray], Callable[[float], np.ndarray]]:
     """R_mn(r_c) in the order of the coordinates, and θ_c, as Chebyshev series in t/T0 on one smooth piece."""
 
     def radial(x: np.ndarray) -> np.ndarray:
@@ -416,13 +425,10 @@ def _radial_tables(
     coefficients = np.linalg.solve(chebyshev.chebvander(points, degree), radial(x))
     order = np.concatenate([np.arange(abs(n) * one, (abs(n) + 1) * one) for n in disk.waves])
 
-    def at(fraction: float) -> np.ndarray:
-        local = (2 * fraction - start - end) / (end - start)
-        return np.asarray(chebyshev.chebval(local, coefficients))[order]
-
+    at = _summed(coefficients[:, order], start, end)
     angle = chebyshev.Chebyshev.interpolate(lambda y: pinion.position(y)[1], degree, [start, end])
     check = start + (end - start) * np.array([0.111, 0.537, 0.923])
     for fraction, exact in zip(check, radial(check), strict=True):
         error = np.abs(at(fraction) - exact[order]).max() / np.abs(exact).max()
         assert error < 1e-11, f"R(r_c) is not smooth between {start} and {end} of the period: {error:.1e}"
-    return at, angle
+    return at, _summed(angle.coef, start, end)

@@ -81,14 +81,20 @@ def pinion_of(body, load):
 
 
 def centroid(path, angle=0.0, phase=0.0):
-    """Place of the one load of a mesh: the mean of the pairs, weighted by what the path says they carry."""
+    """Place of the one load of a mesh."""
 
     def position(x):
-        states = path.pair_states(np.asarray(x) + phase)
-        weight = states.length / states.length.sum(axis=0)
-        return (weight * states.radius).sum(axis=0), (weight * states.angle).sum(axis=0) + angle
+        radius, own = mean_place(path, np.asarray(x) + phase)
+        return radius, own + angle
 
     return Pinion(position, sorted({0.0, *((x - phase) % 1.0 for x in path.breakpoints)}))
+
+
+def mean_place(path, time):
+    """Radius and angle of the centroid of the pairs, weighted by what the path says they carry."""
+    states = path.pair_states(time)
+    weight = states.length / states.length.sum(axis=0)
+    return (weight * states.radius).sum(axis=0), (weight * states.angle).sum(axis=0)
 
 
 def whole(path):
@@ -111,16 +117,22 @@ def parts(rule, states, ratio):
 
 def clock(path, phase, driving):
     """Mesh time of a flank against t/T0 and its instants; a driven one runs a driving one's backwards."""
-    drive = path.drive
-    sweep = drive.entry_rotation - drive.exit_rotation
-    passage = (drive.entry_rotation + 0.5 * math.pi / drive.pinion_teeth) / sweep * path.contact_ratio
-    turn = 2.0 * passage + 0.5
+    turn = math.nan if driving else 2.0 * passage_of(path) + 0.5
 
     def time(x):
         return x + phase if driving else turn - x - phase
 
     instants = ((x - phase if driving else turn - phase - x) % 1.0 for x in path.breakpoints)
     return time, [0.0, *sorted(instants)]
+
+
+def passage_of(path):
+    """Mesh periods since its entry at which a pair passes the pitch point; under load it is told by the package."""
+    drive = path.drive
+    if drive.shaper_teeth is not None:
+        return path.pitch_passage
+    sweep = drive.entry_rotation - drive.exit_rotation
+    return (drive.entry_rotation + 0.5 * math.pi / drive.pinion_teeth) / sweep * path.contact_ratio
 
 
 def springs_of_pairs(path, rule, place, driving=True, sense=1.0, number=0, disk=0):
@@ -148,12 +160,11 @@ def one_spring(path, place, driving=True, sense=1.0, number=0, disk=0):
     time, instants = clock(path, phase, driving)
 
     def position(x):
-        there = path.centroid(time(x))
-        return there.radius, sense * there.angle + angle
+        radius, own = mean_place(path, np.asarray(time(x)))
+        return radius, sense * own + angle
 
-    return Spring(
-        Pinion(position, instants), lambda x: np.full(np.shape(x), path.contact_ratio), number, disk
-    )
+    weight = whole(path)
+    return Spring(Pinion(position, instants), lambda x: weight(time(x)), number, disk)
 
 
 def sprung(body, load, springs, speed_rpm, senses=(1.0,)):
@@ -245,8 +256,39 @@ def sharing(stored):
         yield anchor(sprung(CASE_1, with_stiffness(LOADS["I"], at["value"]), found, at["speed"]), at)
 
 
+def faces(stored):
+    for label, body, path in (
+        ("as printed", CASE_1, fg.ContactPath(CASE_1.drive)),
+        ("line", CASE_1, fg.ContactPath(CASE_1.drive, CASE_1.drive.geometric_contact_ratio)),
+        ("load", cut(CASE_1), fg.loaded_contact(RATED)(cut(CASE_1).drive)),
+    ):
+        at = strongest(stored, label)
+        found = [one_spring(path, (0.0, phase), number=k) for k, phase in enumerate((0.0, 0.5))]
+        yield anchor(sprung(body, with_stiffness(LOADS["I"], at["value"]), found, at["speed"]), at)
+
+
+def between(stored):
+    for label, body, path in (
+        ("input, as printed", CASE_1, fg.ContactPath(CASE_1.drive)),
+        ("idler, as printed", CASE_1, fg.ContactPath(CASE_1.drive)),
+        ("idler, line", CASE_1, fg.ContactPath(CASE_1.drive, CASE_1.drive.geometric_contact_ratio)),
+        ("input, load", cut(CASE_1), fg.loaded_contact(RATED)(cut(CASE_1).drive)),
+    ):
+        at = strongest(stored, label)
+        drives = (True, label.startswith("input"))
+        # An idler drives the lower gear and is driven by the upper one.
+        found = [
+            one_spring(
+                path, (0.0, 0.0), driving, sense=(1.0 if driving else -1.0) * (1.0, -1.0)[gear], disk=gear
+            )
+            for gear, driving in enumerate(drives)
+        ]
+        load = with_stiffness(LOADS["I"], at["value"])
+        yield anchor(sprung(body, load, found, at["speed"], (1.0, -1.0)), at)
+
+
 def clocking(stored):
-    for row, column in ((8, 40), (3, 25)):
+    for row, column in ((25, 40), (75, 25)):
         at = cell(stored, "flexible teeth", row, column)
         path = fg.ContactPath(CASE_1.drive)
         found = [one_spring(path, (0.0, phase), number=k) for k, phase in enumerate((0.0, at["value"]))]
@@ -262,13 +304,14 @@ def clocking_rigid(stored):
 
 
 def gears(stored, number):
-    yield gears_at(strongest(stored, "all"), number)
-    yield gears_at(cell(stored, "all", 1, 12), number)
-
-
-def gears_at(at, number):
     body = replace(CASE_1, drive=replace(CASE_1.drive, pinion_teeth=number))
-    path, step = fg.ContactPath(body.drive), body.drive.angular_pitch
+    path = fg.ContactPath(body.drive)
+    yield gears_at(strongest(stored, "all"), body, path)
+    yield gears_at(cell(stored, "all", 1, 12), body, path)
+
+
+def gears_at(at, body, path):
+    number, step = body.drive.pinion_teeth, body.drive.angular_pitch
     second = round(at["value"])
     roles = ((1, 1), (1, 1), (1, 0), (1, 0), (0, 0))
     found = []
@@ -506,10 +549,24 @@ def main() -> None:
         "ch08_bases": bases,
         "ch08_tongues": tongues,
         "ch08_sharing": sharing,
+        "ch08_faces": faces,
+        "ch08_between": between,
         "ch08_clocking": clocking,
         "ch08_clocking_rigid": clocking_rigid,
         "ch08_gears_26": lambda stored: gears(stored, 26),
         "ch08_gears_25": lambda stored: gears(stored, 25),
+        "ch08_gears_line": lambda stored: iter(
+            [
+                gears_at(
+                    strongest(stored, "all"),
+                    CASE_1,
+                    fg.ContactPath(CASE_1.drive, CASE_1.drive.geometric_contact_ratio),
+                )
+            ]
+        ),
+        "ch08_gears_load": lambda stored: iter(
+            [gears_at(strongest(stored, "all"), cut(CASE_1), fg.loaded_contact(RATED)(cut(CASE_1).drive))]
+        ),
         "ch08_verdict_1": lambda stored: verdict(stored, CASE_1, LOADS["I"], (0.0,)),
         "ch08_verdict_2": lambda stored: verdict(stored, CASE_2, LOADS["II"], (0.0,)),
         "ch08_verdict_3": lambda stored: verdict(stored, EXAMPLE_B.body, LOADS["B"], two_pinions),

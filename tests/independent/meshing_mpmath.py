@@ -7,16 +7,17 @@ The undercutting limit is where the generated surface becomes singular, the poin
 
 from functools import cached_property, lru_cache
 
+import numpy as np
 from mpmath import (
     acos,
     acot,
     atan,
     atan2,
     cos,
+    cos_sin,
     cot,
     findroot,
     hypot,
-    matrix,
     mp,
     mpf,
     pi,
@@ -39,7 +40,7 @@ class Drive:
         self.module = mpf(module)
         pressure = mpf(pressure_angle_deg) * pi / 180
         self.shaft_angle = mpf(shaft_angle_deg) * pi / 180
-        self.rotation_about_x = pi - self.shaft_angle  # gamma_m
+        self.about_x = cos_sin(pi - self.shaft_angle)  # of gamma_m
         self.ratio = mpf(pinion_teeth) / gear_teeth  # m_2s
         self.pitch_radius = self.module * pinion_teeth / 2
         self.base_radius = self.pitch_radius * cos(pressure)
@@ -54,23 +55,23 @@ class Drive:
 
     def shaper_point(self, roll, u):
         """Point of the shaper's flank in its own frame (3-2): the involute unwound from the base circle."""
-        polar = self.half_space + roll
-        on_base = matrix([sin(polar), -cos(polar), 0]) * self.base_radius
-        tangent = matrix([cos(polar), sin(polar), 0]) * (self.base_radius * roll)
-        return on_base - tangent + matrix([0, 0, u])
+        c, s = cos_sin(self.half_space + roll)
+        on_base = vector(s, -c, 0) * self.base_radius
+        tangent = vector(c, s, 0) * (self.base_radius * roll)
+        return on_base - tangent + vector(0, 0, u)
 
     def to_space(self, rotation, point):
         """Shaper frame to the frame fixed in space."""
-        c, s = cos(rotation), sin(rotation)
-        return matrix([c * point[0] - s * point[1], s * point[0] + c * point[1], point[2]])
+        c, s = cos_sin(rotation)
+        return vector(c * point[0] - s * point[1], s * point[0] + c * point[1], point[2])
 
     def to_gear(self, rotation, point):
         """Shaper frame to the rotating frame of the face gear (3-4)."""
         x, y, z = self.to_space(rotation, point)
-        c, s = cos(self.rotation_about_x), sin(self.rotation_about_x)
+        c, s = self.about_x
         x, y, z = x, c * y - s * z, s * y + c * z
-        c, s = cos(self.ratio * rotation), sin(self.ratio * rotation)
-        return matrix([c * x + s * y, -s * x + c * y, z])
+        c, s = cos_sin(self.ratio * rotation)
+        return vector(c * x + s * y, -s * x + c * y, z)
 
     def velocity_along_normal(self, roll, u, rotation):
         """Component of the shaper's motion, seen from the gear, along the common normal."""
@@ -95,14 +96,20 @@ class Drive:
         return self.pitch_radius - self.module
 
 
-def derivative(vector, at):
+def vector(*components):
+    """Components that are added and multiplied together; a matrix of mpmath takes four times as long."""
+    return np.array(components, dtype=object)
+
+
+def derivative(function, at):
     """Central difference of fourth order of a vector function."""
     h = mpf("1e-6")
-    return (8 * (vector(at + h) - vector(at - h)) - (vector(at + 2 * h) - vector(at - 2 * h))) / (12 * h)
+    far = function(at + 2 * h) - function(at - 2 * h)
+    return (8 * (function(at + h) - function(at - h)) - far) / (12 * h)
 
 
 def cross(a, b):
-    return matrix([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    return vector(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def dot(a, b):
@@ -118,7 +125,7 @@ def tip_area(drive, rotation):
 
     along = derivative(lambda r: surface(r, rotation), roll)
     across = derivative(lambda angle: surface(roll, angle), rotation)
-    normal = drive.to_gear(rotation, matrix([cos(drive.half_space + roll), sin(drive.half_space + roll), 0]))
+    normal = drive.to_gear(rotation, vector(*cos_sin(drive.half_space + roll), 0))
     return dot(cross(along, across), normal)
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import joblib
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from benchmarks.synthetic_disk import contact_shape, disk_matrices
 from facegear.floquet.models import replace_parameter
@@ -599,3 +600,16 @@ def test_a_motion_may_stop_oscillating_along_the_parameter():
     for i, j in ((0, 0), (5, 20), (9, 7), (13, 29)):
         cell = growth_rate(Overdamping(float(values[i])).system(float(speeds[j])))
         assert float(chart[i, j]) == pytest.approx(cell, abs=1e-9)
+
+
+def test_one_thread_within_another_and_as_before_after_it():
+    def threads():
+        return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        before = threads()
+        with parallel.one_thread():
+            with parallel.one_thread():
+                assert threads() == {1}
+            assert threads() == {1}
+        assert threads() == before

@@ -285,6 +285,16 @@ class TestBothFaces:
         modes = len(disk_modes(BODY))
         own = np.abs(stiffness.cosine[:, :modes, :modes]).max(axis=(1, 2))
         assert own[::2].max() < 1e-10 * own.max()
+        # Odd orders join the motion of one pinion against the other with the rest, and nothing else.
+        apart = np.eye(modes + 2)
+        apart[modes:, modes:] = [[1.0, 1.0], [1.0, -1.0]]
+        odd = np.abs(apart.T @ stiffness.cosine[::2] @ apart).max(axis=0)
+        assert odd[:-1, :-1].max() < 1e-10 * odd.max()
+        assert odd[-1, -1] < 1e-10 * odd.max()
+
+    def test_swapped_pinions_are_clocked_the_other_way(self):
+        face = model(pinion_angles=(0.0, 0.0), sides=(1, -1), clocking=0.3)
+        assert distance(face, replace(face, clocking=-0.3)) < 1e-9
 
 
 def test_a_disk_that_turns_the_other_way_is_its_mirror_image():

@@ -36,7 +36,9 @@ def test_matrices_are_the_integrals_of_the_shapes():
     shapes = [1 - s, s, *(sp.sin(j * sp.pi * s) for j in range(1, count + 1))]
     for own, scale, order in ((ROD.mass_matrix, ROD.inertia, 0), (ROD.stiffness_matrix, ROD.stiffness, 1)):
         kept = [sp.diff(shape, s, order) for shape in shapes]
-        derived = sp.Matrix(len(kept), len(kept), lambda a, b, x=kept: sp.integrate(x[a] * x[b], (s, 0, 1)))
+        products = {frozenset((f, g)) for f in range(len(kept)) for g in range(len(kept))}
+        integrals = {pair: sp.integrate(kept[min(pair)] * kept[max(pair)], (s, 0, 1)) for pair in products}
+        derived = sp.Matrix(len(kept), len(kept), lambda a, b, x=integrals: x[frozenset((a, b))])
         np.testing.assert_allclose(
             own, scale * np.array(derived, dtype=float), rtol=1e-13, atol=1e-13 * scale
         )

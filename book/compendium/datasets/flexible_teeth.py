@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.transverse import tongue_table
-from facegear.floquet.models import Model
+from facegear.floquet.hsu import band_speeds
+from facegear.floquet.models import Excited, Model
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.maps.response_map import frequency_response
+from facegear.maps.sensitivity import sensitivity
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import Tongue
 from facegear.support.labelled import text, variable
@@ -107,6 +113,77 @@ def tongues_of(names: Sequence[str], found: Sequence[Sequence[Tongue]]) -> xr.Da
     """
     table = tongue_table(found, np.arange(len(names)), "chapter 8")
     return table.assign_coords(model_name=text("section", list(names), "Model"))
+
+
+class LookedAt(NamedTuple):
+    """What Hsu's method, sensitivities and a transmission error say of a model.
+
+    Attributes
+    ----------
+    predicted : int
+        Its tongues that Hsu's method has by the same name.
+    lever : str
+        Parameter that changes the growth of the strongest tongue most, each by the same part; empty without a tongue.
+    change : float
+        What one percent more of it changes in the growth rate, to first order [1/s].
+    resonance : str
+        Label of the largest peak of the force; empty if none is known.
+    speed : float
+        Where it is [rad/s].
+    force : float
+        Root mean square of what varies of the force there [N].
+    """
+
+    predicted: int
+    lever: str
+    change: float
+    resonance: str
+    speed: float
+    force: float
+
+
+def looked_at(
+    model: Model,
+    found: Sequence[Tongue],
+    parameters: Sequence[str],
+    wave: PiecewiseChebyshev,
+    speeds: ArrayLike,
+) -> LookedAt:
+    """Ask a model with known tongues for Hsu's bands, sensitivities, and the response to a transmission error.
+
+    Parameters
+    ----------
+    model : Model
+    found : sequence of Tongue
+        Its tongues in the range of `speeds`.
+    parameters : sequence of str
+        Looked at for the strongest of them.
+    wave : PiecewiseChebyshev
+        Transmission error [m].
+    speeds : array_like
+        Of the response [rad/s], ascending.
+
+    Returns
+    -------
+    LookedAt
+    """
+    at = np.asarray(speeds, dtype=float)
+    bands = band_speeds(model, (float(at[0]), float(at[-1])), order=2, points=21)
+    predicted = len({band.label for band in bands} & {tongue.label for tongue in found})
+    lever, change = "", 0.0
+    if found:
+        strongest = max(found, key=lambda tongue: tongue.growth_rate)
+        slopes = sensitivity(model, strongest.peak, parameters)
+        changes = 0.01 * slopes.growth_rate_derivatives * slopes.values
+        first = int(np.abs(changes).argmax())
+        lever, change = parameters[first], float(changes[first])
+    response = frequency_response(Excited(model, transmission_error=wave), at, jobs=1, progress=False)
+    peaks = response.peak_force_rms.values
+    if not np.isfinite(peaks).any():
+        return LookedAt(predicted, lever, change, "", math.nan, math.nan)
+    top = int(np.nanargmax(peaks))
+    label, speed = str(response.peak_label.values[top]), float(response.peak_speed.values[top])
+    return LookedAt(predicted, lever, change, label, speed, float(peaks[top]))
 
 
 def shares(data: xr.Dataset) -> dict[str, tuple[float, float]]:

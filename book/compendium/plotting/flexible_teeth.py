@@ -24,7 +24,10 @@ _SPEED = "speed of the face gear [rpm]"
 
 @styled
 def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int = 3) -> Figure:
-    """Draw maps of several models on one scale of colours; `label` and `scale` are those of the parameter."""
+    """Draw maps of several models on one scale of colours, each with the unstable share of its cells.
+
+    `label` and `scale` are those of the parameter.
+    """
     names = data.model_name.values.tolist()
     rows = -(-len(names) // columns)
     figure, axes = panels(rows, min(columns, len(names)), 2.8 * rows + 0.8, sharex=True, sharey=True)
@@ -33,7 +36,9 @@ def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int =
     for place, (ax, name) in enumerate(zip(axes, names, strict=False)):
         growth = data.growth_rate.isel(model=place).values
         mesh = draw_unstable(ax, speed, value, growth, largest)
-        ax.set_title(name, loc="left", fontsize=10)
+        ax.set_title(name, loc="left", fontsize=9)
+        # A single cell cannot be seen: the number says whether there is one.
+        ax.set_title(f"{100 * (growth > 0.0).mean():.2g} %", loc="right", fontsize=9)
         ax.grid(False)
         if place % columns == 0:
             ax.set_ylabel(label)

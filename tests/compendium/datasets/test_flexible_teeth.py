@@ -1,5 +1,7 @@
 """Arrays and figures of the chapter on flexible teeth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,25 @@ def test_tongues_stand_under_the_names_of_their_models():
     assert any(found)
 
 
+def test_a_model_is_asked_for_what_its_tongues_hang_together_with():
+    wave = fg.PiecewiseChebyshev.fit(lambda x, piece: 1e-6 * np.cos(2.0 * np.pi * x), [0.0])
+    speeds = fg.rad_per_s(np.linspace(300.0, 1000.0, 36))
+    found = fg.tongues(SPRUNG, (speeds[0], speeds[-1]))
+    told = arrays.looked_at(SPRUNG, found, ("load.damping", "mesh_stiffness"), wave, speeds)
+    assert 0 < told.predicted <= len(found)
+    strongest = max(found, key=lambda tongue: tongue.growth_rate)
+    step = 1e-4
+    moved = (replace(SPRUNG, mesh_stiffness=part * SPRUNG.mesh_stiffness) for part in (1 - step, 1 + step))
+    before, after = (fg.growth_rate(model.system(strongest.peak)) for model in moved)
+    assert told.lever == "mesh_stiffness"
+    assert told.change == pytest.approx(0.01 * (after - before) / (2.0 * step), rel=1e-3)
+    assert told.resonance
+    assert speeds[0] < told.speed < speeds[-1]
+    assert told.force > 0.0
+    without = arrays.looked_at(HELD, (), ("load.damping",), wave, speeds[:5])
+    assert (without.predicted, without.lever) == (0, "")
+
+
 def test_shares_count_what_grows():
     growth = np.array([[[-1.0, 2.0], [-3.0, -4.0]]])
     data = arrays.growth_maps({"rigid": HELD}, SPEEDS[:2], "stiffness", [0.5, 1.0], jobs=1)
@@ -55,6 +76,8 @@ def test_shares_count_what_grows():
 def test_figures_name_what_they_show(maps):
     shown = texts(draw.growth_maps(maps, "stiffness [x]"))
     assert all(words in shown for words in ("rigid", "flexible", "stiffness [x]"))
+    largest = max(share for share, _ in arrays.shares(maps).values())
+    assert f"{largest:.2g} %" in shown
     lengths = {"equal": {"fast": 20.0, "slow": 1.0}, "length": {"fast": 10.0, "slow": 0.5}}
     shown = texts(draw.bars(lengths, "share [%]"))
     assert all(words in shown for words in ("20.0", "0.5", "share [%]", "fast"))
