@@ -1,5 +1,6 @@
 """Settings shared by all tests."""
 
+import gc
 import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -58,6 +59,19 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return mark.args[0] if mark else 0.0
 
     items.sort(key=seconds, reverse=True)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection() -> None:
+    """Make no rounds for garbage while what stays is loaded: half a million objects, half a second a round."""
+    gc.disable()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_finish() -> None:
+    """Leave what has been loaded out of all further rounds."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(scope="session")
