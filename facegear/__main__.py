@@ -2,7 +2,16 @@
 
 import sys
 
-from facegear.drives.command import main
+
+def main() -> int:
+    """Run the command; an interruption while it is still being loaded ends it without a traceback as well."""
+    try:
+        from facegear.drives.command import main as run
+    except KeyboardInterrupt:
+        # INTERRUPTED of the command, which is not there yet
+        return 130
+    return run()
+
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -368,7 +368,7 @@ def assess(
     refused: list[str] = []
     others: list[Variant] = []
     settle = partial(settled_tongues, tolerance=tolerance, most_steps=most_steps)
-    work = [(case.model, speeds) for case in cases]
+    work = [(case.model, speeds, None if number else first) for number, case in enumerate(cases)]
     for case, found in zip(cases, each_in_processes(settle, work, jobs), strict=True):
         outcomes.append(Outcome(replace(case, model=found.model), found.tongues, found.settled))
         # Where two bases agree for the file's teeth, the smaller is where the others begin.

@@ -143,7 +143,12 @@ class SettledTongues:
 
 
 def settled_tongues(
-    model: FaceGears, speeds: tuple[float, float], *, tolerance: float = 0.02, most_steps: int = 5
+    model: FaceGears,
+    speeds: tuple[float, float],
+    known: Sequence[Tongue] | None = None,
+    *,
+    tolerance: float = 0.02,
+    most_steps: int = 5,
 ) -> SettledTongues:
     """Tongues of a drive in a basis that is raised until they stand still.
 
@@ -156,6 +161,8 @@ def settled_tongues(
         Drive in the first basis.
     speeds : tuple of float
         Lowest and highest speed [rad/s].
+    known : sequence of Tongue, optional
+        Tongues in the first basis, where they have been traced already.
     tolerance : float
         Part of the range of speed in which two bases in succession may disagree, 1e-6 to 0.5. They must also agree
         on whether there is any tongue.
@@ -178,7 +185,7 @@ def settled_tongues(
     shown = model
     for circles, diameters in _bases(model.gear.body, most_steps):
         shown = with_basis(model, circles, diameters) if steps else model
-        found = tongues(shown, speeds)
+        found = tuple(known) if known is not None and not steps else tongues(shown, speeds)
         moved = disagreement(steps[-1].tongues, found, speeds) if steps else math.nan
         steps.append(BasisStep(circles, diameters, found, moved))
         if moved <= tolerance and bool(found) == bool(steps[-2].tongues):

@@ -12,6 +12,7 @@ import os
 import re
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -57,7 +58,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = signal.signal(signal.SIGTERM, _interrupt)
     try:
         options = parser().parse_args(arguments)
-        return int(options.run(options))
+        with warnings.catch_warnings():
+            # joblib replaces a worker that has come to hold much memory, and goes on.
+            warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
+            return int(options.run(options))
     except UsageError as problem:
         _say(f"facegear: error: {problem}")
         return MISUSED

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterator, Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -54,12 +55,14 @@ def write_drive_file(file: DriveFile, path: str | Path) -> Path:
         raise TypeError(f"file must be a DriveFile, as read_drive_file returns it, got {file!r}")
     text = drive_text(file.content)
     try:
-        same = parse_drive(text) == file
-    except DriveFileError:
-        same = False
-    if not same:
+        again = parse_drive(text)
+    except DriveFileError as problem:
+        raise ValueError(f"file = {file.name!r}: its content is no drive: {problem}") from problem
+    other = [part.name for part in fields(file) if getattr(again, part.name) != getattr(file, part.name)]
+    if other:
         raise ValueError(
-            f"file = {file.name!r} must be as it was read to be written: its content says something else than its parts"
+            f"file = {file.name!r} must be as it was read to be written: its content says something else than "
+            f"{', '.join(other)}"
         )
     with written_whole(Path(path)) as place:
         place.write_text(text, encoding="utf-8")

@@ -14,6 +14,15 @@ from pathlib import Path
 _LONGEST_STEM = 60
 
 
+@contextmanager
+def _about(path: Path) -> Iterator[None]:
+    """Let errors of the system name what was to be written, not the temporary name beside it."""
+    try:
+        yield
+    except OSError as error:
+        raise type(error)(error.errno, error.strerror, str(path)) from error
+
+
 def file_stem(text: str) -> str:
     """Make a name of a file, without its ending, from any text.
 
@@ -55,9 +64,10 @@ def written_whole(path: Path) -> Iterator[Path]:
     Path
         Another name in the same folder, with the same ending. What was at `path` stays if the block raises.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
+    with _about(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
+        os.close(handle)
     temporary = Path(name)
     try:
         yield temporary
@@ -83,8 +93,9 @@ def folder_written_whole(path: Path) -> Iterator[Path]:
         replaced one by one, each whole, and others stay. If the block raises, nothing of it is left, and `path` is as
         it was.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+    with _about(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
     try:
         yield temporary
         temporary.chmod(0o755)  # mkdtemp makes it private

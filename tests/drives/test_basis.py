@@ -97,6 +97,12 @@ class TestSettledTongues:
         assert found.tongues == last.tongues
         assert found.unstable_share == pytest.approx(last.moved)
         assert found.model.body.nodal_diameters == 5
+        again = settled_tongues(CASE_1, self.RANGE, first.tongues, tolerance=0.05, most_steps=2)
+        assert again.steps[0].tongues == first.tongues
+        assert again.tongues == found.tongues
+        # What is known is believed.
+        told = settled_tongues(CASE_1, self.RANGE, last.tongues, most_steps=1)
+        assert told.tongues == last.tongues
 
     def test_settles_where_nothing_moves(self):
         quiet = (float(rad_per_s(960.0)), float(rad_per_s(990.0)))

@@ -1,5 +1,6 @@
 """The command `facegear`, as a stranger calls it: from any folder, with files that are right and wrong."""
 
+import argparse
 import csv
 import io
 import json
@@ -10,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 
 import nbformat
@@ -18,6 +20,7 @@ import pytest
 import yaml
 
 import facegear
+import facegear.__main__
 from facegear.drives import command, sections
 from facegear.drives.command import main
 from facegear.drives.drive_file import read_drive_file
@@ -89,6 +92,33 @@ def test_what_cannot_be_understood(arguments, told, capsys):
         main(arguments)
     assert caught.value.code == 2
     assert told in capsys.readouterr().err
+
+
+def test_an_interruption_while_the_command_is_loaded(monkeypatch):
+    class Interrupts:
+        @staticmethod
+        def find_spec(name, *_):
+            if name == "facegear.drives.command":
+                raise KeyboardInterrupt
+
+    monkeypatch.delitem(sys.modules, "facegear.drives.command")
+    monkeypatch.setattr(sys, "meta_path", [Interrupts, *sys.meta_path])
+    assert facegear.__main__.main() == 130
+
+
+def test_a_replaced_worker_is_not_worth_a_word(monkeypatch, recwarn):
+    def warned(options):
+        warnings.warn(
+            "A worker stopped while some jobs were given to the executor.", UserWarning, stacklevel=1
+        )
+        warnings.warn("something else", UserWarning, stacklevel=1)
+        return 0
+
+    given = argparse.ArgumentParser()
+    given.set_defaults(run=warned)
+    monkeypatch.setattr(command, "parser", lambda: given)
+    assert main([]) == 0
+    assert [str(each.message) for each in recwarn] == ["something else"]
 
 
 def test_version(capsys):

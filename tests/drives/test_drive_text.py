@@ -112,10 +112,10 @@ def test_a_section_that_is_there_with_nothing_in_it_stays():
 def test_a_file_whose_parts_were_exchanged_is_not_written(tmp_path):
     file = parse_drive(example_text("case_1"))
     other = replace(file, requirements=replace(file.requirements, power=1e3))
-    with pytest.raises(ValueError, match="file = 'Case I' must be as it was read to be written"):
+    with pytest.raises(ValueError, match=r"file = 'Case I' must be as it was .* else than requirements$"):
         write_drive_file(other, tmp_path / "my_drive.yaml")
     bare = replace(file, content={})
-    with pytest.raises(ValueError, match="must be as it was read"):
+    with pytest.raises(ValueError, match="its content is no drive: "):
         write_drive_file(bare, tmp_path / "my_drive.yaml")
     assert not list(tmp_path.iterdir())
 

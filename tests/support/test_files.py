@@ -18,6 +18,24 @@ def test_a_file_appears_when_all_is_written(tmp_path):
     assert list(path.parent.iterdir()) == [path]
 
 
+@pytest.mark.parametrize("place", [written_whole, folder_written_whole])
+def test_errors_name_what_was_to_be_written(tmp_path, monkeypatch, place):
+    def refuse(**options):
+        raise PermissionError(13, "Permission denied", f"{options['dir']}/.table.x1y2")
+
+    monkeypatch.setattr("tempfile.mkstemp", refuse)
+    monkeypatch.setattr("tempfile.mkdtemp", refuse)
+    path = tmp_path / "table.csv"
+    with pytest.raises(PermissionError, match=r"Permission denied: '.*/table\.csv'$"), place(path):
+        pass
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    with (
+        pytest.raises(OSError, match=r"file/below/table\.csv'$"),
+        place(tmp_path / "file" / "below" / "table.csv"),
+    ):
+        pass
+
+
 def test_a_file_stays_what_it_was_if_writing_stops(tmp_path):
     path = tmp_path / "table.csv"
     path.write_text("old", encoding="utf-8")

@@ -19,6 +19,7 @@ from facegear.maps.response_map import frequency_response
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import tongues
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.contact_pattern import loaded_contact_pattern
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.paths import loaded_contact
 from facegear.mechanics.torsional import Gearbox, Torsional
@@ -241,27 +242,15 @@ def pressed_flank(drive: Drive, torques: ArrayLike, ages: int = 121, points: int
         ``pressure`` [N/m] over (torque, age, point), and where: ``position`` along the face and ``height`` below the
         gear's tooth top [m] over (age, point).
     """
-    torques = np.asarray(torques, dtype=float)
-    slices = LoadedContact(drive, float(torques[0])).slices
-    age = np.linspace(0.0, slices.sweep, ages + 2)[1:-1]
-    inner, outer = slices.ends(age)
-    s = inner[:, np.newaxis] + (outer - inner)[:, np.newaxis] * np.linspace(0.0, 1.0, points)
-    q = slices.pressure_angle(s)
-    rolls = slices.roll(q, slices.limits[0] - age[:, np.newaxis] * slices.pitch)
-    height = drive.contact_region.depth(q, rolls) - drive.generating.tooth_top_distance
-    pressures = [LoadedContact(drive, t).line_load(age, s) for t in torques]
-    both = ("age", "point")
-    return xr.Dataset(
-        {
-            "pressure": variable(
-                ("torque", *both), pressures, "Load per length", "N/m", rtol=1e-8, atol=1e-3
-            ),
-            "position": _length(both, slices.position(s), "Along the face"),
-            "height": _length(both, height, "Below the tooth top"),
-        },
-        {"torque": torques, "age": age, "point": np.arange(points)},
-        {"parameters": describe(drive, shaper_teeth=drive.generating.pinion_teeth)},
-    )
+    patterns = [
+        loaded_contact_pattern(LoadedContact(drive, torque), lines=ages, points=points)
+        for torque in np.asarray(torques, dtype=float).tolist()
+    ]
+    pressures = xr.concat([pattern["pressure"] for pattern in patterns], "torque")
+    # Where the lines are is the same under any torque.
+    found = patterns[0].drop_vars("torque").assign(pressure=pressures)
+    found.attrs["parameters"] = describe(drive, shaper_teeth=drive.generating.pinion_teeth)
+    return found
 
 
 def _axis(speeds_rpm: ArrayLike) -> tuple[FloatArray, FloatArray]:

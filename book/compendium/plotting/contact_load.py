@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,7 +12,6 @@ from facegear.plotting.style import (
     BLUE,
     GREEN,
     GREY,
-    GROWTH,
     INK,
     ORANGE,
     PURPLE,
@@ -132,33 +130,6 @@ def load_sharing(data: xr.Dataset, torque: float) -> Figure:
         ax.plot(age, np.where(share > 0.0, share, np.nan), _DASH[name], label=_LAW[name])
     ax.set(xlabel="mesh periods since a pair was first pressed", ylabel="share of the load", ylim=(0.0, 1.05))
     ax.legend()
-    return figure
-
-
-def _draw_pressure(ax: Any, data: xr.Dataset, torque: float, largest: float) -> Any:
-    drawn = ax.contourf(
-        data.position.values * _MM,
-        data.height.values * _MM,
-        data.pressure.sel(torque=torque).values * 1e-3,
-        levels=largest * 1e-3 * np.append(1e-3, np.linspace(0.04, 1.0, 25)),
-        cmap=GROWTH,
-    )
-    for line in ({"point": 0}, {"point": -1}, {"age": 0}, {"age": -1}):
-        ax.plot(data.position[line] * _MM, data.height[line] * _MM, color=GREY, linewidth=0.8)
-    ax.set(xlabel="along the face, u [mm]", ylabel="below the tooth top [mm]")
-    ax.invert_yaxis()
-    ax.grid(False)
-    return drawn
-
-
-@styled
-def pressed_flank(data: xr.Dataset, torque: float) -> Figure:
-    """Load per length on the flank while it goes through the mesh, under one torque."""
-    figure, (ax,) = panels(height=3.4)
-    largest = float(data.pressure.sel(torque=torque).max())
-    drawn = _draw_pressure(ax, data, torque, largest)
-    figure.colorbar(drawn, ax=ax, label="load per length [N/mm]", format="%.0f")
-    ax.set_title(f"{torque:g} N m at the pinion")
     return figure
 
 
