@@ -169,7 +169,7 @@ TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnima
 
 @pytest.mark.parametrize(
     ("width", "scheme"),
-    [(NARROWEST, "light"), (1440, "light"), (WIDEST, "dark"), (768, "dark"), (NARROWEST, "dark")],
+    [(NARROWEST, "light"), (1280, "light"), (WIDEST, "dark"), (768, "dark"), (NARROWEST, "dark")],
 )
 def test_page_is_whole_and_readable(look: Callable[[int, str], Visit], width: int, scheme: str) -> None:
     opened = look(width, scheme)
@@ -186,6 +186,8 @@ def test_page_is_whole_and_readable(look: Callable[[int, str], Visit], width: in
         == page.locator(".bd-article .math:has(mjx-container)").count()
     )
     assert page.locator("mjx-merror").count() == 0
+    if width >= 1280:
+        assert not page.evaluate(CUT_FORMULAS)
     assert not re.search(r"\$\$|\\\(|\\\[|\\begin\{", page.locator(".bd-article").evaluate(TEXT_OUTSIDE_CODE))
 
     for picture in page.locator("img").evaluate_all(PICTURES):
@@ -216,6 +218,14 @@ OVERFLOW = """width => {
     .filter(element => element.getBoundingClientRect().right > innerWidth + 1 && !inside(element))
     .map(element => element.outerHTML.slice(0, 120));
 }"""
+
+# Displayed formulas that would have to be scrolled.
+CUT_FORMULAS = """() => [...document.querySelectorAll('mjx-container[display="true"]')]
+  .filter(formula => {
+    const [place, own] = [formula, formula.querySelector("mjx-math")].map(e => e.getBoundingClientRect().width);
+    return place > 0 && own > place + 1;
+  })
+  .map(formula => formula.textContent.slice(0, 60))"""
 
 TEXT_OUTSIDE_CODE = """article => {
   const copy = article.cloneNode(true);
