@@ -17,10 +17,13 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
+from numba import config, njit
 from numpy.typing import NDArray
 
 from facegear.support.types import FloatArray
+
+if config.DISABLE_JIT:
+    raise ImportError("NUMBA_DISABLE_JIT is set: what is not compiled is far slower than NumPy")
 
 #: Matrices that go together.
 LANES = 32

@@ -122,6 +122,8 @@ def stability_map(
     TypeError, ValueError
         Naming the argument: speeds not ascending or not positive, values not finite, empty axes, an unknown
         parameter, or what the model itself refuses.
+    ArithmeticError
+        If a cell cannot be computed, as where its period is too long for its fastest motion: no map has holes.
 
     Examples
     --------

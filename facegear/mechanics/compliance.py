@@ -20,7 +20,7 @@ from facegear.support.parameters import Material
 from facegear.support.types import FloatArray
 
 # Newton's rule for the approach: steps, and the error at which it ends, relative.
-_STEPS, _SETTLED = 60, 1e-12
+_STEPS, _SETTLED, _LAST_DIGIT = 60, 1e-12, 4.0 * np.finfo(float).eps
 # Part of the length of a line by which its end may be missed, as by rounding.
 _ROUNDED = 1e-12
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -96,15 +96,24 @@ class Compliance(ABC):
         """Approach δ [m], shape S, at which pairs (K,) + S have a force together [N], from a value that is near.
 
         By Newton's rule. Force grows with δ, and ever faster: from above no step goes too far, and from below only the
-        first one does.
+        first one does. Where no pair is reached, as between unloaded pairs that touch for less than a mesh period, the
+        nearest one is, by a little.
         """
+        there = lines.inner < lines.outer
+        nearest = np.where(there, np.clip(0.0, lines.inner, lines.outer) ** 2, np.inf).min(axis=0)
+        reached = nearest + force / self.pair_stiffness
         for _ in range(_STEPS):
             carried, stiffness = (part.sum(axis=0) for part in self.force(approach, lines))
-            step = (carried - force) / np.where(stiffness > 0.0, stiffness, self.pair_stiffness)
-            approach = approach - step
-            if np.all((np.abs(step) <= _SETTLED * approach) & (stiffness > 0.0)):
-                return approach
-        raise RuntimeError(f"approach did not settle: last step {np.abs(step).max():.3g} m")
+            touches = stiffness > 0.0
+            step = (carried - force) / np.where(touches, stiffness, self.pair_stiffness)
+            settled = np.abs(step) <= np.maximum(_SETTLED * (approach - nearest), _LAST_DIGIT * approach)
+            if np.all(settled & touches):
+                return np.asarray(approach - step)
+            approach = np.where(touches, approach - step, np.maximum(approach, reached))
+        raise ArithmeticError(
+            f"approach did not settle, last step {np.abs(step).max():.3g} m: a force of {force:.3g} N is lost in "
+            "rounding beside gaps that it has to close first; give a larger torque"
+        )
 
     def balanced(self, force: float, approach: FloatArray, lines: Lines) -> tuple[FloatArray, FloatArray]:
         """Approach [m] as of :meth:`equilibrium`, and stiffness of all pairs there [N/m], both of shape S."""

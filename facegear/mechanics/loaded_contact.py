@@ -135,6 +135,10 @@ class LoadedContact:
     ------
     TypeError, ValueError
         If contact is along lines or not on the flank, or an argument is of the wrong kind or outside its range.
+    ArithmeticError
+        From its properties: above 90°, if ends of contact lines cannot be followed where corners of the shaper cut the
+        flank; at the least torques, if unloaded pairs touch for less than a mesh period and a force is lost in
+        rounding.
 
     Examples
     --------

@@ -265,7 +265,7 @@ class Slices:
     @cached_property
     def _ends(self) -> PiecewiseChebyshev:
         """Both ends of a line against its age over `_whole`, as s [√m]; beyond the last line those of the last."""
-        edges = np.array([0.0, *self.kinks, self.sweep]) / self._whole
+        edges = _apart(np.array([0.0, *self.kinks, self.sweep]) / self._whole)
         tolerances = np.full(edges.shape, 1e-11 if self._region.is_cut else 1e-12)
         if self.few_teeth:
             # An end comes down to a base circle with the square root of time: pieces shrink towards such kinks.
@@ -276,7 +276,16 @@ class Slices:
             lower, upper = self._bounds(self._line(np.minimum(fractions * self._whole, self.sweep)))
             return self.root_gap(np.stack([lower.max(axis=0), upper.min(axis=0)], axis=-1))
 
-        return PiecewiseChebyshev.fit_together(ends, edges, tolerance=tolerances)
+        try:
+            return PiecewiseChebyshev.fit_together(ends, edges, tolerance=tolerances)
+        except ValueError as error:
+            drive = self.drive
+            raise ArithmeticError(
+                f"contact lines of {drive.pinion_teeth}/{drive.gear_teeth} teeth at a shaft angle of "
+                f"{math.degrees(drive.shaft_angle):.6g}°, cut by {drive.generating.pinion_teeth} teeth, with "
+                f"{self.contact.misalignment!r}: their ends, where corners of the shaper cut the flank, cannot be "
+                "followed to 1e-11; nearby angles or misalignments mostly can"
+            ) from error
 
     @property
     def _whole(self) -> float:
@@ -332,10 +341,19 @@ def _polynomial(series: ChebyshevSeries) -> Chebyshev:
     return Chebyshev(series.coefficients, domain=[series.low, series.high])
 
 
-def _graded(edges: FloatArray) -> list[float]:
+def _apart(edges: FloatArray) -> FloatArray:
+    """Ascending edges without those next to others, in whose time an end does nothing; the first and the last stay."""
+    kept = [float(edges[0])]
+    for edge in edges[1:-1].tolist():
+        if edge - kept[-1] > _SHORTEST and edges[-1] - edge > _SHORTEST:
+            kept.append(edge)
+    return np.array([*kept, float(edges[-1])])
+
+
+def _graded(edges: FloatArray) -> FloatArray:
     """Instants that come near each edge from both sides, each distance an eighth of the one before."""
     widths = np.diff(edges)
     steps = 0.45 / _GRADING ** np.arange(round(math.log(1.0 / _SHORTEST, _GRADING)))
-    after = (edges[:-1, np.newaxis] + widths[:, np.newaxis] * steps).ravel()
-    before = (edges[1:, np.newaxis] - widths[:, np.newaxis] * steps).ravel()
-    return [*after.tolist(), *before.tolist()]
+    away = widths[:, np.newaxis] * steps
+    found = np.stack([edges[:-1, np.newaxis] + away, edges[1:, np.newaxis] - away])
+    return np.asarray(found[:, away > _SHORTEST].ravel())

@@ -302,6 +302,36 @@ def test_wrong_kinds(call):
         call()
 
 
+@pytest.mark.parametrize("law", ["slice", "pair"])
+@pytest.mark.parametrize("torque", [1e-4, 1.0])
+def test_where_no_unloaded_pair_touches_the_nearest_one_carries_the_load(law, torque):
+    drive = Drive(53, 152, 9.7e-3, math.radians(24.9), shaper_teeth=56)
+    error = Misalignment(offset=-0.00664)
+    assert UnloadedContact(drive, error).contact_ratio < 0.97
+    contact = LoadedContact(drive, torque, error, compliance=law)
+    assert 1.0 - 1e-12 < contact.contact_ratio < 1.5
+    carried = contact.pairs(np.linspace(0.0, 1.0, 101)).force.sum(axis=0)
+    # A gap of micrometres comes before the approach, and takes its digits.
+    np.testing.assert_allclose(carried, torque / drive.base_radius, rtol=1e-9)
+
+
+def test_edges_that_lie_close_together_are_told_apart_or_taken_as_one():
+    contact = LoadedContact(
+        Drive(28, 72, 4.12e-3, math.radians(20.6), math.radians(92.9), shaper_teeth=32), 50.0
+    )
+    assert (np.diff(contact.slices.breakpoints) > 0.0).all()
+    # Between those at 92.8° and 93°, which differ by 7e-4.
+    assert contact.contact_ratio == pytest.approx(2.49935, abs=1e-5)
+
+
+@pytest.mark.slow
+def test_lines_that_cannot_be_followed_are_refused_with_drive_and_misalignment():
+    drive = Drive(29, 199, 5e-3, math.radians(24.0), math.radians(91.0), shaper_teeth=31)
+    contact = LoadedContact(drive, 500.0, Misalignment(offset=-4.6e-3))
+    with pytest.raises(ArithmeticError, match=r"29/199 teeth at a shaft angle of 91°.*offset=-0\.0046"):
+        _ = contact.contact_ratio
+
+
 def test_the_ends_of_a_line_are_pressed_however_they_are_rounded():
     """Their load is the limit from inside: it vanished wherever an end came out one digit beyond itself."""
     contact = LoadedContact(CUT, 1000.0)
