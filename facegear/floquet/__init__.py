@@ -2,13 +2,13 @@
 
 `periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
 `multipliers` the transition matrix by the methods of `collocation`, `stepping`, `radau` and `taylor`, `columns`,
-`multiplier_curves` and `sheets` the same along a parameter, along speed and along both; `eigenvalues` are those of many
-matrices, in `lockstep` where Numba is installed, as `lockstep_exponentials` and `lockstep_taylor` have steps of small
-systems; `modes` has natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu` are the
-approximations, `hill` the harmonic balance of motions. `response` has the steady motion that forces cause, along the
-panels of `motion`. Systems whose loads act in contact only are those of `clearance`: `orbits` has their periodic
-motions, on the panels of `contact_panels`, `continuation` the families of these along a parameter, `transients` where
-other motions end, compiled in `lockstep_transients` where Numba is installed.
+`multiplier_curves` and `sheets` the same along a parameter, along speed and along both; `eigenvalues` are those of
+many matrices, in `lockstep` where Numba is installed (`compiled`), as `lockstep_exponentials` and `lockstep_taylor`
+have steps of small systems; `modes` has natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu`
+are the approximations, `hill` the harmonic balance of motions. `response` has the steady motion that forces cause,
+along the panels of `motion`. Systems whose loads act in contact only are those of `clearance`: `orbits` has their
+periodic motions, on the panels of `contact_panels`, `continuation` the families of these along a parameter,
+`transients` where other motions end, compiled in `lockstep_transients` where Numba is installed.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*

@@ -7,12 +7,12 @@ square, and LAPACK is asked again where they differ.
 
 from __future__ import annotations
 
-from functools import cache
 from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.floquet.compiled import where_compiled
 from facegear.support.types import ComplexArray, FloatArray
 
 # Fewer matrices than this are not worth another library.
@@ -83,13 +83,10 @@ def spectral_radii(matrices: FloatArray) -> FloatArray:
     return np.asarray(np.abs(eigenvalues(matrices)).max(axis=-1), dtype=float)
 
 
-@cache
-def _lockstep() -> ModuleType | None:
-    """Return the compiled code, or None where there is no Numba for this NumPy, or no place to keep its work."""
-    try:
-        from facegear.floquet import lockstep
-    except (ImportError, RuntimeError):
-        return None
+@where_compiled
+def _lockstep() -> ModuleType:
+    from facegear.floquet import lockstep
+
     return lockstep
 
 

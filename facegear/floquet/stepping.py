@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache, cached_property
+from functools import cached_property
 from types import ModuleType
 
 import numpy as np
 
 from facegear.floquet.collocation import chain
+from facegear.floquet.compiled import where_compiled
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, require_system
 from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev, Side
 from facegear.support.types import ComplexArray, FloatArray
@@ -84,13 +85,10 @@ def _lockstep(matrices: FloatArray) -> ModuleType | None:
     return _compiled() if pays else None
 
 
-@cache
-def _compiled() -> ModuleType | None:
-    """Return the compiled code, or None where there is no Numba for this NumPy, or no place to keep its work."""
-    try:
-        from facegear.floquet import lockstep_exponentials
-    except (ImportError, RuntimeError):
-        return None
+@where_compiled
+def _compiled() -> ModuleType:
+    from facegear.floquet import lockstep_exponentials
+
     return lockstep_exponentials
 
 

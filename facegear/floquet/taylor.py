@@ -28,6 +28,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from facegear.floquet.collocation import UnsuitableSystemError
+from facegear.floquet.compiled import where_compiled
 from facegear.floquet.piecewise import same_function
 from facegear.floquet.stepping import Family, aligned_edges
 from facegear.support.parameters import keep, within
@@ -268,13 +269,10 @@ def _matrices(
     return found
 
 
-@cache
-def _compiled() -> ModuleType | None:
-    """Return the compiled code, or None where there is no Numba for this NumPy, or no place to keep its work."""
-    try:
-        from facegear.floquet import lockstep_taylor
-    except (ImportError, RuntimeError):
-        return None
+@where_compiled
+def _compiled() -> ModuleType:
+    from facegear.floquet import lockstep_taylor
+
     return lockstep_taylor
 
 

@@ -7,13 +7,13 @@ initial states. Steps end at the breakpoints of the system, not at contacts: err
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 from types import ModuleType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.clearance import ClearanceSystem
+from facegear.floquet.compiled import where_compiled
 from facegear.floquet.contact_panels import Pattern, merged
 from facegear.floquet.periodic import weighted_shape
 from facegear.floquet.piecewise import Side
@@ -165,13 +165,10 @@ def settled(system: ClearanceSystem, states: ArrayLike, periods: int, kept: int 
     return field.followed(start, count, kept)
 
 
-@cache
-def _compiled() -> ModuleType | None:
-    """Return the compiled code, or None where there is no Numba for this NumPy, or no place to keep its work."""
-    try:
-        from facegear.floquet import lockstep_transients
-    except (ImportError, RuntimeError):
-        return None
+@where_compiled
+def _compiled() -> ModuleType:
+    from facegear.floquet import lockstep_transients
+
     return lockstep_transients
 
 

@@ -136,9 +136,9 @@ class LoadedContact:
     TypeError, ValueError
         If contact is along lines or not on the flank, or an argument is of the wrong kind or outside its range.
     ArithmeticError
-        From its properties: above 90°, if ends of contact lines cannot be followed where corners of the shaper cut the
-        flank; at the least torques, if unloaded pairs touch for less than a mesh period and a force is lost in
-        rounding.
+        From its properties: above 90°, if ends of contact lines cannot be followed where corners of the shaper cut
+        the flank; if an equilibrium, or the instants at which contact changes, cannot be found, as at the least
+        torques where unloaded pairs touch for less than a mesh period and a force is lost in rounding.
 
     Examples
     --------
@@ -296,7 +296,7 @@ class LoadedContact:
                 return first, last, self._fit(first, merged([*changes.tolist(), last - first]))
             except ValueError as error:
                 failure = error
-        raise RuntimeError(f"contact changes at instants that were not found: {failure}")
+        raise ArithmeticError(f"contact changes at instants that were not found: {failure}")
 
     def _fit(self, first: float, breakpoints: tuple[float, ...]) -> PiecewiseChebyshev:
         """Approach [m] and stiffness of all pairs [N/m] against t/T0."""

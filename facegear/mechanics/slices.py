@@ -283,8 +283,8 @@ class Slices:
             raise ArithmeticError(
                 f"contact lines of {drive.pinion_teeth}/{drive.gear_teeth} teeth at a shaft angle of "
                 f"{math.degrees(drive.shaft_angle):.6g}°, cut by {drive.generating.pinion_teeth} teeth, with "
-                f"{self.contact.misalignment!r}: their ends, where corners of the shaper cut the flank, cannot be "
-                "followed to 1e-11; nearby angles or misalignments mostly can"
+                f"{self.contact.misalignment!r}: their ends cannot be followed, as where corners of the shaper cut the "
+                f"flank; nearby angles or misalignments mostly can ({error})"
             ) from error
 
     @property

@@ -577,7 +577,7 @@ class PlateCompliance(Compliance):
             step = moved - ends
             step = np.where(step * before < 0.0, np.clip(step, *_HALF * np.abs(before)), step)
             ends, before, change = ends + step, step, np.abs(step)
-        raise RuntimeError(f"ends of the contact did not settle: last step {change.max():.3g} √m")
+        raise ArithmeticError(f"ends of the contact did not settle: last step {change.max():.3g} √m")
 
     def _at(self, approach: FloatArray, lines: Lines) -> tuple[_State, FloatArray]:
         """State of lines of shape S, in one row, at an approach."""

@@ -544,6 +544,8 @@ def force_period(stored, body, load, power):
 def main() -> None:
     """Write the anchors of the figures named, or of all."""
     two_pinions = (0.0, 2.0 * math.pi / 3.0)
+    geometric = fg.ContactPath(CASE_1.drive, CASE_1.drive.geometric_contact_ratio)
+    loaded = fg.loaded_contact(RATED)(cut(CASE_1).drive)
     jobs = {
         "ch08_maps": maps,
         "ch08_bases": bases,
@@ -555,18 +557,8 @@ def main() -> None:
         "ch08_clocking_rigid": clocking_rigid,
         "ch08_gears_26": lambda stored: gears(stored, 26),
         "ch08_gears_25": lambda stored: gears(stored, 25),
-        "ch08_gears_line": lambda stored: iter(
-            [
-                gears_at(
-                    strongest(stored, "all"),
-                    CASE_1,
-                    fg.ContactPath(CASE_1.drive, CASE_1.drive.geometric_contact_ratio),
-                )
-            ]
-        ),
-        "ch08_gears_load": lambda stored: iter(
-            [gears_at(strongest(stored, "all"), cut(CASE_1), fg.loaded_contact(RATED)(cut(CASE_1).drive))]
-        ),
+        "ch08_gears_line": lambda stored: [gears_at(strongest(stored, "all"), CASE_1, geometric)],
+        "ch08_gears_load": lambda stored: [gears_at(strongest(stored, "all"), cut(CASE_1), loaded)],
         "ch08_verdict_1": lambda stored: verdict(stored, CASE_1, LOADS["I"], (0.0,)),
         "ch08_verdict_2": lambda stored: verdict(stored, CASE_2, LOADS["II"], (0.0,)),
         "ch08_verdict_3": lambda stored: verdict(stored, EXAMPLE_B.body, LOADS["B"], two_pinions),

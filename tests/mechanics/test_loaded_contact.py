@@ -315,6 +315,14 @@ def test_where_no_unloaded_pair_touches_the_nearest_one_carries_the_load(law, to
     np.testing.assert_allclose(carried, torque / drive.base_radius, rtol=1e-9)
 
 
+@pytest.mark.parametrize("law", ["slice", "plate"])
+def test_a_load_that_is_lost_in_rounding_is_refused(law):
+    drive = Drive(53, 152, 9.7e-3, math.radians(24.9), shaper_teeth=56)
+    contact = LoadedContact(drive, 1e-8, Misalignment(offset=-0.006637444929717929), compliance=law)
+    with pytest.raises(ArithmeticError, match=r"approach did not settle|contact changes at instants"):
+        _ = contact.contact_ratio
+
+
 def test_edges_that_lie_close_together_are_told_apart_or_taken_as_one():
     contact = LoadedContact(
         Drive(28, 72, 4.12e-3, math.radians(20.6), math.radians(92.9), shaper_teeth=32), 50.0
