@@ -20,9 +20,11 @@ from typing import Any
 from facegear import __version__
 from facegear.drives.contacts import NAMES
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
-from facegear.drives.drive_keys import NAME, SECTIONS, Key, plain, schema
+from facegear.drives.drive_keys import NAME, SECTIONS
+from facegear.drives.drive_schema import schema
 from facegear.drives.drive_text import drive_text, write_drive_file
 from facegear.drives.examples import about, example_names, example_text
+from facegear.drives.keys import Key, plain
 from facegear.drives.new_drive import all_keys, completed, missing, value_in
 
 DONE, REFUSED, MISUSED, INTERRUPTED = 0, 1, 2, 130

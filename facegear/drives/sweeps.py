@@ -12,7 +12,8 @@ import xarray as xr
 from facegear.drives import report
 from facegear.drives.contacts import NAMES, torsional_under
 from facegear.drives.drive_file import DriveFile
-from facegear.drives.drive_keys import OVER_SI, SECTIONS, Key
+from facegear.drives.drive_keys import SECTIONS
+from facegear.drives.keys import OVER_SI, Key
 from facegear.drives.verdict import driven
 from facegear.floquet.models import Model, value_of
 from facegear.mechanics.edge_stiffness import Following

@@ -24,7 +24,7 @@ import facegear.__main__
 from facegear.drives import command, sections
 from facegear.drives.command import main
 from facegear.drives.drive_file import read_drive_file
-from facegear.drives.drive_keys import schema
+from facegear.drives.drive_schema import schema
 from facegear.support.labelled import load
 from tests.drives.test_page import HOSTILE, Reader
 
