@@ -21,7 +21,7 @@ from facegear.drives.contacts import massless, torsional_under
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import best_change
 from facegear.drives.intervals import Intervals, gaps, in_rpm, united
-from facegear.drives.report import describe
+from facegear.drives.report_arrays import describe
 from facegear.drives.tolerances import WorstCase, worst_case
 from facegear.drives.variants import (
     Variant,

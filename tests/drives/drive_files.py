@@ -1,5 +1,6 @@
-"""Drive files that several tests start from, and how a refusal reads."""
+"""Drive files that several tests start from, how a refusal reads, and what a table holds."""
 
+import csv
 from pathlib import Path
 
 import pytest
@@ -20,3 +21,8 @@ def refusal(content):
     assert message.startswith("my.yaml: ")
     assert "\n" not in message
     return message.removeprefix("my.yaml: ")
+
+
+def rows(path):
+    with path.open(encoding="utf-8-sig") as file:
+        return list(csv.DictReader(file))
