@@ -12,7 +12,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.verdict import powered
 from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
-from facegear.mechanics.spread_force import RIM_POINT, pitch_ratio
+from facegear.mechanics.spreads import RIM_POINT, pitch_ratio
 from facegear.mechanics.transverse import FaceGears, nominal_pinion_mass
 
 

@@ -15,7 +15,7 @@ from facegear.drives.drive_keys import NAME, SECTIONS
 from facegear.drives.forces import pressed
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.edge_stiffness import DrivingForce
-from facegear.mechanics.spread_force import root_thickness
+from facegear.mechanics.spreads import root_thickness
 from facegear.support.parameters import rad_per_s
 from tests.drives.drive_files import BOTH_FACES, CASE_1, DRIVES, GEARBOX, refusal
 

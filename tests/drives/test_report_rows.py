@@ -9,7 +9,7 @@ from facegear.design.teeth import root_stress
 from facegear.drives import report_rows
 from facegear.drives.drive_file import read_drive_file
 from facegear.drives.verdict import driven
-from facegear.mechanics.spread_force import PitchPoint, RimPoint
+from facegear.mechanics.spreads import PitchPoint, RimPoint
 from facegear.support.parameters import rad_per_s
 from tests.drives.drive_files import DRIVES
 

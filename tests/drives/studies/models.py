@@ -4,7 +4,7 @@ from facegear.mechanics import cases
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
-from facegear.mechanics.spread_force import PitchPoint
+from facegear.mechanics.spreads import PitchPoint
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad
 

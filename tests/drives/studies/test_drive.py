@@ -16,7 +16,7 @@ from facegear.drives.studies.drive import drive_study
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
 from facegear.mechanics import cases
-from facegear.mechanics.spread_force import FaceStrip
+from facegear.mechanics.spreads import FaceStrip
 from tests.drives.studies.models import THREE
 
 
