@@ -7,7 +7,6 @@ import numpy as np
 import facegear as fg
 from facegear.mechanics.cases import CASE_1
 from facegear.mechanics.pressed_points import PressedPoints, Spread
-from tests.mechanics.test_pressed_stiffness import DRIVE, SHARED, Moved, assert_same
 
 DRIVE = CASE_1.drive
 SHARED = fg.Contact(path=fg.shared_load("length_share"), sharing="each")
