@@ -139,7 +139,7 @@ class PinionTooth(Tooth):
 
     def load(self, q: FloatArray, roll: FloatArray) -> Load:
         """Load along a tangent of the base circle."""
-        own = self.slices.contact.own_roll(q, roll)
+        own = self.slices.contact.lines.own_roll(q, roll)
         height, half = self._flank(own)
         # Against a line square to the middle of the tooth, towards the root.
         direction = own - self._half_angle

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.point_contact import ALIGNED, Misalignment
+from facegear.geometry.misalignment import ALIGNED, Misalignment
 from facegear.mechanics.compliance import Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.elastic_teeth import GearTooth, PinionTooth
