@@ -480,6 +480,19 @@ def test_names_in_code_lead_to_their_place(visit: Callable[..., Visit]) -> None:
     assert not missing
 
 
+def test_types_in_docstrings_lead_to_public_names_and_to_other_libraries(visit: Callable[..., Visit]) -> None:
+    page = visit("api.html").page
+    links = page.locator(".classifier a.reference, dt > strong > a.reference, dl.field-list dt a.reference")
+    addresses = set(links.evaluate_all("links => links.map(link => link.href)"))
+    stored = {
+        line.split()[0]
+        for path in (ROOT / "book" / "inventories").glob("*.txt")
+        for line in path.read_text(encoding="utf-8").splitlines()[3:]
+    }
+    assert stored == {urlsplit(address).fragment for address in addresses if "/api.html" not in address}
+    assert {"facegear.Drive", "facegear.Contact"} <= {urlsplit(address).fragment for address in addresses}
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_title_page_says_in_one_screen_what_the_book_is(visit: Callable[..., Visit], scheme: str) -> None:
     page = visit("intro.html", width=1200, scheme=scheme).page
