@@ -26,8 +26,8 @@ from numpy.typing import ArrayLike, NDArray
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.contact_lines import crossing
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import merged
 from facegear.geometry.misalignment import ALIGNED, Misalignment
+from facegear.geometry.timed_pairs import merged
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.plate_compliance import PlateCompliance
 from facegear.mechanics.slices import Slices

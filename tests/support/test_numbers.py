@@ -21,8 +21,10 @@ from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, SkewLine, mesh_period
+from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.phases import phase_split
+from facegear.geometry.skew_line import SkewLine
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import tongues
 from facegear.mechanics import cases, classical, disk, plate, torsional
