@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -19,10 +19,16 @@ from facegear.design.changes import effects_of_changes
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share, with_basis
 from facegear.drives.contacts import massless, torsional_under
 from facegear.drives.drive_file import DriveFile
-from facegear.drives.findings import best_change
+from facegear.drives.findings import TORSION, best_change
 from facegear.drives.intervals import Intervals, gaps, in_rpm, united
 from facegear.drives.report_arrays import describe
-from facegear.drives.tolerances import WorstCase, worst_case
+from facegear.drives.tolerances import (
+    Tolerances,
+    WorstCase,
+    not_known,
+    worst_case,
+    worst_case_in_torsion,
+)
 from facegear.drives.variants import (
     Variant,
     other_teeth,
@@ -94,7 +100,8 @@ class Assessment:
         Tongues in torsion under each contact and each arm of the mesh force, the file's own first, over the range of
         speed with its tolerance; empty where the file has no gearbox.
     worst : dict of str to WorstCase
-        Of the file's own contact and teeth, by the direction of the force; empty where the file has no tolerances.
+        Of the file's own contact and teeth, by the direction of the force, and of its gearbox in "torsion"; empty where
+        the file has no tolerances.
     response : xarray.Dataset or None
         Steady response of the gearbox to the torque of one pinion's power
         (:func:`facegear.maps.response_map.frequency_response`), if there is one.
@@ -140,6 +147,8 @@ class Assessment:
             if any(len(kinds) == 2 for kinds in seen.values()):
                 found.append(words)
         nominal = {o.variant.force: o.is_stable for o in reversed(self.outcomes) if self._is_own(o)}
+        if self.torsion:
+            nominal[TORSION] = not next(iter(self.torsion.values()))
         if any(nominal.get(force) and not case.is_stable for force, case in self.worst.items()):
             found.append("where in their tolerances stiffness, damping and speed lie")
         if len({bool(tongues) for tongues in self.torsion.values()}) == 2:
@@ -217,18 +226,17 @@ class Assessment:
     def over_tolerances(self) -> tuple[str, ...]:
         """What the tolerances of the file make of its own contact and teeth, a sentence for each force."""
         given = self.file.tolerances
-        ranges = ", ".join(
-            f"{name} ±{100 * part:g} %"
-            for name, part in (
-                ("stiffness", given.stiffness),
-                ("damping", given.damping),
-                ("speed", given.speed),
-            )
-            if part
-        )
+        disk = {"stiffness": given.stiffness, "damping": given.damping, "speed": given.speed}
+        torsion = {"stiffness of teeth": given.stiffness, "damping of teeth": given.damping}
+        torsion |= {"stiffness of shafts": given.shaft_stiffness, "damping of shafts": given.shaft_damping}
+        torsion |= {"speed": given.speed}
         found = []
         for force, case in self.worst.items():
-            if case.is_stable:
+            parts = torsion if force == TORSION else disk
+            ranges = ", ".join(f"{name} ±{100 * part:g} %" for name, part in parts.items() if part)
+            if case.unknown:
+                words = f"not known ({case.unknown})"
+            elif case.is_stable:
                 words = "stable for all values"
             elif case.swept:
                 words = (
@@ -269,9 +277,9 @@ class Assessment:
         """What no model includes."""
         return (
             "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
-            "temperature; tolerances are those of the disk's motion and of the file's own contact and teeth, and those "
-            "of stiffness and damping leave torsion as it is; the driving force is the same at all speeds, and speeds "
-            "outside the range and its tolerance are not looked at."
+            "temperature; tolerances are those of the file's own contact and teeth, and of its own arm in torsion; "
+            "the driving force is the same at all speeds, and speeds outside the range and its tolerance are not "
+            "looked at."
         )
 
     def table(self) -> xr.Dataset:
@@ -392,7 +400,7 @@ def assess(
             here = replace(variant, model=tried.found.model)
             outcomes.append(Outcome(here, tried.found.tongues, tried.found.settled))
         say(f"other teeth {number + 1} of {len(others)}: {variant.name}")
-    worst = _worst(file, outcomes[:2], jobs) if file.tolerances.given else {}
+    worst = _worst(file, outcomes[:2], jobs)
     torsion = _torsion(file, contacts, jobs)
     say("tolerances and torsion are done; the change that helps most is looked for")
     return Assessment(
@@ -436,9 +444,23 @@ def _torsion(file: DriveFile, contacts: Mapping[str, Contact], jobs: int) -> dic
 
 
 def _worst(file: DriveFile, own: Sequence[Outcome], jobs: int) -> dict[str, WorstCase]:
-    work = [(outcome.variant.model, file.requirements.speeds, file.tolerances) for outcome in own]
-    found = in_processes(worst_case, work, jobs)
-    return {outcome.variant.force: case for outcome, case in zip(own, found, strict=True)}
+    work: dict[str, tuple[Any, ...]] = {}
+    if file.tolerances.given:
+        work |= {outcome.variant.force: (worst_case, outcome.variant.model) for outcome in own}
+    if file.tolerances.given_in_torsion and file.torsional is not None:
+        work[TORSION] = (worst_case_in_torsion, file.torsional)
+    where = (file.requirements.speeds, file.tolerances)
+    found = in_processes(_at_worst, [(*each, *where) for each in work.values()], jobs)
+    return dict(zip(work, found, strict=True))
+
+
+def _at_worst(
+    find: Callable[..., WorstCase], model: Any, speeds: tuple[float, float], tolerances: Tolerances
+) -> WorstCase:
+    try:
+        return find(model, speeds, tolerances)
+    except (ArithmeticError, ValueError) as error:
+        return not_known(str(error), speeds, tolerances)
 
 
 def _response(file: DriveFile, jobs: int, refused: list[str]) -> xr.Dataset | None:

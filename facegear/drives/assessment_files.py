@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from facegear.drives.assess import Assessment, Outcome
+from facegear.drives.findings import TORSION
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
 from facegear.plotting import assessment as draw
 from facegear.support import labelled
@@ -91,24 +92,32 @@ def _tolerances(found: Assessment) -> Section:
     title = "Tolerances"
     if not found.worst:
         return Section(title, (Paragraph("The file has no section tolerances."),))
-    rows = tuple(
-        (
-            force,
-            f"{stiffness:g}",
-            f"{damping:g}",
-            ", ".join(f"{rpm(t.lower):.4g} to {rpm(t.upper):.4g}" for t in tongues) or "none",
-        )
-        for force, case in found.worst.items()
-        for (stiffness, damping), tongues in case.corners.items()
-    )
-    headings = ("driving force", "stiffness, times", "damping, times", "unstable [rpm]")
+    tables = tuple(_corners([name for name in found.worst if name != TORSION], found, "Corners of the range"))
+    if TORSION in found.worst:
+        tables += tuple(_corners([TORSION], found, "Corners of the range in torsion"))
     words = Paragraph(
         "Of the file's own contact and teeth. Between these corners a tongue that stands at both ends of a way has "
-        "swept all speeds between; where all are stable the largest growth is followed along stiffness."
+        "swept all speeds between; where all are stable the largest growth is followed along the edges of the range."
     )
-    return Section(
-        title, (words, Listing(found.over_tolerances), Table(headings, rows, "Corners of the range"))
+    return Section(title, (words, Listing(found.over_tolerances), *tables))
+
+
+def _corners(names: Sequence[str], found: Assessment, caption: str) -> Iterator[Table]:
+    """Give the corners of worst cases that have factors of the same."""
+    cases = {name: found.worst[name] for name in names if found.worst[name].corners}
+    if not cases:
+        return
+    rows = tuple(
+        (
+            name,
+            *(f"{factor:g}" for factor in factors),
+            ", ".join(f"{rpm(t.lower):.4g} to {rpm(t.upper):.4g}" for t in tongues) or "none",
+        )
+        for name, case in cases.items()
+        for factors, tongues in case.corners.items()
     )
+    factors = next(iter(cases.values())).factors
+    yield Table(("model", *(f"{words}, times" for words in factors), "unstable [rpm]"), rows, caption)
 
 
 def _dynamic_load(found: Assessment) -> Section:

@@ -75,7 +75,7 @@ class DriveFile:
     force_at : str
         Where the driving force presses, one of :data:`facegear.drives.forces.PLACES`.
     tolerances : Tolerances
-        How far stiffness, damping and speed may be from that.
+        How far stiffness, damping, shafts and speed may be from that.
     content : mapping
         What the file says, as it says it: keys and values by section. No part of what makes two drives equal.
     """
@@ -223,6 +223,7 @@ def _drive_file(found: FileValues) -> DriveFile:
         lambda: [pressed(force_at, each, drive).points(drive) for each in contacts.values()],
     )
     tolerances = Tolerances(**values["tolerances"])
+    built(found, "tolerances", lambda: tolerances.require_shafts(values["gearbox"] is not None))
     return DriveFile(
         name=found.name,
         transverse=transverse,

@@ -327,10 +327,16 @@ def _tolerance(name: str, meaning: str) -> Key:
 _TOLERANCES = Section(
     "How far the drive may be from what the file says, to either side, for `facegear assess`.",
     (
-        _tolerance("stiffness_percent", "of stiffness: bearings and flexible teeth together"),
         _tolerance(
-            "damping_percent", "of damping: bearings, flexible teeth and the body's material together"
+            "stiffness_percent",
+            "of stiffness: bearings and flexible teeth together; in torsion, the teeth of `gearbox`",
         ),
+        _tolerance(
+            "damping_percent",
+            "of damping: bearings, flexible teeth and the body's material together; in torsion, the teeth of `gearbox`",
+        ),
+        _tolerance("shaft_stiffness_percent", "of the stiffness of the shafts of `gearbox`, both together"),
+        _tolerance("shaft_damping_percent", "of the damping of the shafts of `gearbox`, both together"),
         _tolerance("speed_percent", "of speed: below the lowest and above the highest operating speed"),
     ),
     required=False,

@@ -10,8 +10,9 @@ import xarray as xr
 from facegear.drives.assess import Assessment, Outcome, _told, _torsion, assess
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
+from facegear.drives.findings import TORSION
 from facegear.drives.intervals import gaps
-from facegear.drives.tolerances import Tolerances, WorstCase
+from facegear.drives.tolerances import Tolerances, WorstCase, not_known
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
 from facegear.floquet.labels import Combination
@@ -100,6 +101,32 @@ class TestVerdict:
             "10 % of the speeds.",
         )
         assert _told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+
+    def test_tolerances_of_shafts_turn_torsion(self):
+        swept = ((float(rad_per_s(600.0)), float(rad_per_s(690.0))),)
+        speeds = CASE_1.requirements.speeds
+        worst = {TORSION: WorstCase(speeds, {}, swept, ())}
+        file = replace(CASE_1, tolerances=Tolerances(damping=0.2, shaft_stiffness=0.1))
+        stable = {"Tregold, arm as printed": ()}
+        found = assessment(outcome("Tregold", DEAD, RIGID), torsion=stable, worst=worst, file=file)
+        assert (found.verdict, found.decides) == (
+            "depends",
+            ("where in their tolerances stiffness, damping and speed lie",),
+        )
+        assert found.over_tolerances == (
+            "With damping of teeth ±20 %, stiffness of shafts ±10 %, torsion: unstable for some values at 600 to 690 "
+            "rpm, 10 % of the speeds.",
+        )
+        assert _told(found.always_stable) == "100 to 600, 690 to 1000 rpm"
+
+    def test_tolerances_that_could_not_be_followed_make_no_drive_safe(self):
+        file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1))
+        worst = {DEAD: not_known("transition matrices jump", file.requirements.speeds, file.tolerances)}
+        found = assessment(outcome("Tregold", DEAD, RIGID), worst=worst, file=file)
+        assert found.verdict == "depends"
+        assert found.over_tolerances == (
+            "With stiffness ±10 %, force keeps its direction: not known (transition matrices jump).",
+        )
 
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
