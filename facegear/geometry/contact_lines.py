@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 
 from facegear.geometry.cut_lines import CutLines
 from facegear.geometry.generated_flank import STEEPEST, GeneratedFlank
+from facegear.support.quadrature import gauss
 from facegear.support.roots import root
 from facegear.support.types import FloatArray
 
 # Gauss–Legendre on [0, 1]: 24 nodes leave nothing of a smooth integrand over a fraction of a radian.
-_NODES, _WEIGHTS = (array.astype(np.float64) for array in np.polynomial.legendre.leggauss(24))
-_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
+_NODES, _WEIGHTS = gauss(0.0, 1.0, 24)
 
 
 @dataclass(frozen=True)
