@@ -14,7 +14,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.geometry.contact_lines import ContactRegion, root
+from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.flanks import (
     ContactLines,
     PinionFlank,
@@ -25,6 +25,7 @@ from facegear.geometry.flanks import (
     top_thickness,
 )
 from facegear.support import parameters
+from facegear.support.roots import root
 from facegear.support.types import FloatArray
 from facegear.symbolic import twins
 
@@ -567,7 +568,7 @@ class Drive:
                 f"roll must lie between 0 and the shaper's tip at {self.shaper_tip_roll:.6g} rad, "
                 f"got {rolls[outside].flat[0]:.6g}"
             )
-        pairs = np.array([self.contact_region.usable_radii(float(value)) for value in rolls.flat])
+        pairs = np.array([self.contact_region.cut.usable_radii(float(value)) for value in rolls.flat])
         inner, outer = pairs.reshape(*rolls.shape, 2).transpose(-1, *range(rolls.ndim))
         return inner, outer
 
