@@ -84,9 +84,8 @@ def resolve(
 
 def link_types(app: Sphinx, config: Config) -> None:
     """Tell numpydoc which words of a type are links: its own are not, public names are."""
-    config.numpydoc_xref_ignore = (
-        "all"  # all others; as a text of `_config.yml` Jupyter Book would not let it through
-    )
+    # All others: as a text of `_config.yml` Jupyter Book would not let it through.
+    config.numpydoc_xref_ignore = "all"
     own = {name: f"facegear.{name}" for name in facegear.__all__}
     config.numpydoc_xref_aliases = {word: word for word in DEFAULT_LINKS} | own | config.numpydoc_xref_aliases
 

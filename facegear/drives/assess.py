@@ -23,7 +23,7 @@ from facegear.drives.disk_response import disk_responses
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION, best_change
 from facegear.drives.outcome import Outcome
-from facegear.drives.report import describe
+from facegear.drives.report_arrays import describe
 from facegear.drives.tolerances import (
     Tolerances,
     WorstCase,

@@ -16,7 +16,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
 from facegear.drives.intervals import Intervals, gaps, in_rpm, united
 from facegear.drives.outcome import Outcome
-from facegear.drives.report import describe
+from facegear.drives.report_arrays import describe
 from facegear.drives.tolerances import WorstCase
 from facegear.maps.tracing import Tongue
 from facegear.support.labelled import text, variable

@@ -177,8 +177,11 @@ def _balance(a: FloatArray, size: int, n: np.uint64) -> None:
 
 
 @inner
-def _reduce(a: FloatArray, size: int, n: np.uint64) -> None:
-    """Bring matrices to Hessenberg form by reflections I - t v vᵀ from both sides."""
+def reduce(a: FloatArray, kept: FloatArray, size: int, n: np.uint64) -> None:
+    """Bring matrices to Hessenberg form by reflections I - t v vᵀ from both sides.
+
+    Of each, v and then t are kept one after the other, if there is room for any.
+    """
     d = np.uint64(size)
     stride = (d + _ONE) * _N
     v, u, w = np.zeros(size * LANES), np.zeros(size * LANES), np.zeros(size * LANES)
@@ -213,6 +216,10 @@ def _reduce(a: FloatArray, size: int, n: np.uint64) -> None:
                 v[i + lane] *= largest[lane]
         a[column + start + _N : column + d * _N] = 0.0
         v[k * _N : start] = 0.0
+        if kept.size:
+            at = k * (d + _ONE) * _N
+            kept[at : at + d * _N] = v
+            kept[at + d * _N : at + (d + _ONE) * _N] = t
         # One pass for u = A v and w = Aᵀ v, one for A - t v wᵀ - t u vᵀ + t² (vᵀ A v) v vᵀ.
         u[:] = 0.0
         w[:] = 0.0
@@ -434,7 +441,7 @@ def _eigenvalues(
     count, d, n = matrices.shape[0], matrices.shape[1], np.uint64(LANES)
     flat = np.zeros((d + 1) * (d + 1) * LANES)
     a = flat.reshape(d + 1, d + 1, LANES)
-    own_real, own_imag = np.zeros((d, LANES)), np.zeros((d, LANES))
+    own_real, own_imag, nothing = np.zeros((d, LANES)), np.zeros((d, LANES)), np.zeros(0)
     fine = np.ones(LANES, np.bool_)
     for start in range(0, count, LANES):
         a[d] = 0.0
@@ -446,7 +453,7 @@ def _eigenvalues(
                 for j in range(d):
                     a[j, i, lane] = matrix[i, j]
         _balance(flat, d, n)
-        _reduce(flat, d, n)
+        reduce(flat, nothing, d, n)
         _francis(flat, d, own_real, own_imag, fine, n)
         for lane in range(min(LANES, count - start)):
             converged[start + lane] = fine[lane]

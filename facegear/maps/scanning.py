@@ -14,7 +14,9 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from facegear.floquet.eigenvectors import change
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.maps.peaks import largest_between
 from facegear.support.types import ComplexArray, FloatArray
@@ -138,41 +140,79 @@ def _foretold(
     centres, reach = centres[inside], reach[inside]
     if centres.size == 0:
         return centres, reach, Scan(centres, centres)
-    matrices, slopes = curve.transition_matrices(1.0 / centres), curve.slopes(1.0 / centres)
-    values, vectors = np.linalg.eig(matrices)
+    values, direct, crossed = change(
+        curve.transition_matrices(1.0 / centres), curve.slopes(1.0 / centres), _DECAYED
+    )
     samples = Scan(1.0 / centres, np.abs(values).max(axis=1))
-    # Exactly dependent eigenvectors, at a border, have no inverse.
-    left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
-    forces = left @ slopes @ vectors
     values = np.where(values == 0.0, 1e-300, values)
-    rates = np.diagonal(forces, axis1=1, axis2=2) / values
-    first, second = np.triu_indices(values.shape[1], 1)
-    # Each pair off the real axis has a conjugate that says the same; decayed motions do not come back.
-    candidate = (values[:, first].imag >= 0.0) & (np.abs(values[:, first] * values[:, second]) > _DECAYED)
-    sample, pair = np.nonzero(candidate)
-    i, j = first[pair], second[pair]
-    a, b = values[sample, i], values[sample, j]
-    apart = np.log(a / b)
-    turning = rates[sample, i] - rates[sample, j]
-    # Off the diagonal the logarithm has the divided difference of its values.
-    scale = np.where(np.abs(a - b) > 1e-6 * np.abs(a), apart / np.where(a == b, 1.0, a - b), 1.0 / a)
-    coupling = forces[sample, i, j] * forces[sample, j, i] * scale**2
-    bend = (turning**2 / 4.0 + coupling).real
-    with np.errstate(divide="ignore", invalid="ignore"):
-        step = -(apart * turning).real / (4.0 * bend)
-    near = (bend < 0.0) & np.isfinite(step) & (np.abs(step) <= reach[sample])
-    sample, i, j, step = sample[near], i[near], j[near], step[near]
-    mean = np.log(np.abs(a * b))[near] / 2.0 + step * (rates[sample, i] + rates[sample, j]).real / 2.0
-    difference = (apart[near] + step * turning[near]) / 2.0
-    spread = difference.real**2 + _SAFETY**2 * np.abs(coupling[near]) * step**2
-    foretold = np.abs((difference**2 + coupling[near] * step**2).real)
+    rates = np.einsum("vii->vi", direct) / values
+    # Of a pair off the real axis and its conjugate, which says the same, one: both above the axis, or the second below.
+    above = np.triu(np.ones(direct.shape[1:], dtype=bool), 1)
+    below = np.triu(values.imag[:, np.newaxis] > 0.0)
+    both = (
+        _near((values, rates), (values, rates), direct * direct.swapaxes(1, 2), above, reach),
+        _near(
+            (values, rates),
+            (values.conj(), rates.conj()),
+            crossed * crossed.conj().swapaxes(1, 2),
+            below,
+            reach,
+        ),
+    )
+    sample, step, apart, turning, coupling, mean = (np.concatenate(part) for part in zip(*both, strict=True))
+    difference = (apart + step * turning) / 2.0
+    spread = difference.real**2 + _SAFETY**2 * np.abs(coupling) * step**2
+    foretold = np.abs((difference**2 + coupling * step**2).real)
     # The growth of the pair without the coupling: where that alone is unstable, and the coupling can change it by a
     # small part only, the meeting tells nothing new.
     apart_only = np.abs(difference.real)
-    change = np.sqrt(np.maximum(spread, foretold)) - apart_only
+    added = np.sqrt(np.maximum(spread, foretold)) - apart_only
     excess = mean + apart_only - threshold
-    matters = (excess + change > 0.0) & (change > _TELLING * excess)
+    matters = (excess + added > 0.0) & (added > _TELLING * excess)
     return centres[sample[matters]] + step[matters], np.abs(step[matters]), samples
+
+
+class _Near(NamedTuple):
+    """Pairs of multipliers whose phases are foretold to meet within reach: of each, one entry.
+
+    Number of the sample, step to the meeting, p_i − p_j and its slope, G_ij G_ji, and (p_i + p_j)/2 at the meeting, of
+    which only the growth.
+    """
+
+    sample: NDArray[np.intp]
+    step: FloatArray
+    apart: ComplexArray
+    turning: ComplexArray
+    coupling: ComplexArray
+    mean: FloatArray
+
+
+def _near(
+    one: tuple[ComplexArray, ComplexArray],
+    other: tuple[ComplexArray, ComplexArray],
+    products: ComplexArray,
+    pairs: NDArray[np.bool_],
+    reach: FloatArray,
+) -> _Near:
+    """Pairs that may meet, of multipliers and their rates (V, m) and products of forces (V, m, m)."""
+    a, first = (part[:, :, np.newaxis] for part in one)
+    b, second = (part[:, np.newaxis] for part in other)
+    p, q = np.log(a), np.log(b)
+    apart = p - q
+    apart.imag -= 2.0 * np.pi * np.round(apart.imag / (2.0 * np.pi))
+    turning, difference = first - second, a - b
+    # Off the diagonal the logarithm has the divided difference of its values.
+    close = np.abs(difference) <= 1e-6 * np.abs(a)
+    scale = np.where(close, 1.0 / a, apart / np.where(difference == 0.0, 1.0, difference))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        coupling = products * scale**2
+        bend = (turning**2 / 4.0 + coupling).real
+        step = -(apart * turning).real / (4.0 * bend)
+        # Decayed motions do not come back.
+        near = pairs & (p.real + q.real > np.log(_DECAYED)) & (bend < 0.0)
+        near &= np.abs(step) <= reach[:, np.newaxis, np.newaxis]
+        mean = (p.real + q.real) / 2.0 + step * (first + second).real / 2.0
+    return _Near(np.nonzero(near)[0], step[near], apart[near], turning[near], coupling[near], mean[near])
 
 
 def _maxima(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]:

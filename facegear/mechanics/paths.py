@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath, PairStates, TimedPairs
-from facegear.geometry.point_contact import ALIGNED, Misalignment, PointPath, aligned_contact
+from facegear.geometry.misalignment import ALIGNED, Misalignment
+from facegear.geometry.point_path import PointPath, aligned_contact
 from facegear.mechanics.loaded_contact import (
     COMPLIANCES,
     LoadedContact,

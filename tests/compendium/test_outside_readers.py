@@ -9,7 +9,7 @@ import pytest
 
 from compendium import printed
 from facegear.design.changes import effects_of_changes
-from facegear.drives import report
+from facegear.drives import report_arrays
 from facegear.drives.export import write_points
 from facegear.geometry.drive import Drive
 from facegear.geometry.solids import tooth_surface
@@ -56,7 +56,7 @@ def test_tables_are_read_by_netcdf_c(tmp_path, names):
 
 WITHOUT_ROWS = {
     "any": lambda: table_of([]),
-    "tongues": lambda: report.tongue_table((), "Case I"),
+    "tongues": lambda: report_arrays.tongue_table((), "Case I"),
     "changes": lambda: effects_of_changes(FIGURES["7.12a"].model(), (), (20.0, 21.0), "Fig. 7.12"),
 }
 

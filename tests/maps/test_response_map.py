@@ -6,7 +6,7 @@ import joblib
 import numpy as np
 import pytest
 
-from facegear.drives import studies
+from facegear.drives.studies.gearbox import gearbox_study
 from facegear.floquet.models import Coordinate, Excited, WithoutRigidMotion, replace_parameter
 from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
@@ -193,7 +193,7 @@ def test_nothing_known_at_any_speed_is_said_and_why():
 
 @pytest.fixture(scope="module")
 def gearbox():
-    study = studies.gearbox_study()
+    study = gearbox_study()
     model = study.model(study.settings({}))
     return Excited(model, force=PiecewiseChebyshev.constant([0.0, 0.0, -800.0]))
 

@@ -235,8 +235,9 @@ def disk_alone(cases: Mapping[str, xr.Dataset], printed_hp: Mapping[str, Sequenc
             f"$P_c$ = {critical:.0f} hp",
             (critical, 0.97),
             xycoords=("data", "axes fraction"),
-            xytext=(5, 0),
+            xytext=(-5 if critical > 0.5 * _hp(float(data["power"][-1])) else 5, 0),
             textcoords="offset points",
+            ha="right" if critical > 0.5 * _hp(float(data["power"][-1])) else "left",
             va="top",
         )
         for power in printed_hp[title]:

@@ -164,7 +164,17 @@ def wide_maps(
         right = ax.get_xlim()[1]
         for name, height in marks[title].items():
             ax.axhline(height, color=INK, linestyle=":", linewidth=1.0)
-            ax.text(0.99 * right, height, name, ha="right", va="bottom", fontsize=9, color=INK)
+            ax.annotate(
+                name,
+                (0.99 * right, height),
+                xytext=(0, 2),
+                textcoords="offset points",
+                ha="right",
+                va="bottom",
+                fontsize=9,
+                color=INK,
+                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.4},
+            )
         share = 100.0 * (chart["growth_rate"].values > 0.0).mean(axis=1)
         beside.plot(share, chart[_parameter(chart)].values * _SCALE[_parameter(chart)], color=VERMILION)
         beside.set_xlim(left=0.0)
