@@ -223,7 +223,7 @@ def _drive_file(found: FileValues) -> DriveFile:
         lambda: [pressed(force_at, each, drive).points(drive) for each in contacts.values()],
     )
     tolerances = Tolerances(**values["tolerances"])
-    _by_model(found, "tolerances", lambda: tolerances.require_shafts(gearbox is not None))
+    built(found, "tolerances", lambda: tolerances.require_shafts(values["gearbox"] is not None))
     return DriveFile(
         name=found.name,
         transverse=transverse,
