@@ -345,6 +345,12 @@ def test_links_inside_the_book_lead_somewhere(address: str) -> None:
     assert not broken
 
 
+def test_the_foot_names_version_and_commit(address: str) -> None:
+    page = (PAGES / address).read_text(encoding="utf-8")
+    (foot,) = re.findall(r'<div class="extra_footer">\s*(.*?)\s*</div>', page)
+    assert re.fullmatch(r"Made by facegear \d+\.\d+\.\d+, commit [0-9a-f]{40}(\+changes)?\.", foot)
+
+
 def test_buttons_open_files_of_the_repository(address: str) -> None:
     """Launch buttons name files by their path in the repository, where its address is known, and else there are none.
 

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from facegear.drives.assess import Assessment, Outcome, _told, _torsion, assess
+from facegear.drives.assess import _torsion, assess
+from facegear.drives.assessment import Assessment, _told
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.findings import TORSION
 from facegear.drives.intervals import gaps
+from facegear.drives.outcome import Outcome
 from facegear.drives.tolerances import Tolerances, WorstCase, not_known
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
