@@ -14,7 +14,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.geometry.drive import ADDENDUM, Drive
+from facegear.geometry.drive import Drive
+from facegear.geometry.proportions import ADDENDUM
 from facegear.geometry.timed_pairs import SAME_INSTANT, SHORTEST, TOLERANCE, PairStates, TimedPairs, merged
 from facegear.support import parameters
 from facegear.support.types import FloatArray

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from facegear import Drive
-from facegear.geometry.drive import SHAPER_OVERHANG
 from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.proportions import SHAPER_OVERHANG
 from facegear.mechanics.contact import Contact
 from tests.independent.shaper_envelope import shaper_of
 
