@@ -11,7 +11,7 @@ from types import MappingProxyType
 from facegear.drives.flexible_teeth import CENTROID, SHARING
 from facegear.drives.forces import PLACES, RIM
 from facegear.drives.keys import PER_SI, Key, Section
-from facegear.geometry.drive import FEWEST_TEETH
+from facegear.geometry.proportions import FEWEST_TEETH
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
 from facegear.mechanics.two_gears import DRIVES
 from facegear.support.parameters import STEEL

@@ -33,7 +33,7 @@ from facegear.support.types import ComplexArray, FloatArray
 #: Gauss nodes a panel.
 DEFAULT_NODES = 16
 #: Largest product of fastest frequency and panel length [rad].
-DEFAULT_PANEL_ANGLE = 9.0
+DEFAULT_PANEL_ANGLE = 8.0
 #: Estimated error of the motion over one panel at which it is halved, in units of the root of the energy.
 PANEL_TOLERANCE = 1e-12
 # A mode that is slower than this part of the fastest is a rigid-body motion, whose frequency is known to the root of
@@ -48,8 +48,9 @@ _SOFTEST = 0.1
 _MOST_HALVINGS = 8
 # Parts of a period beyond which a motion is too fast to follow.
 _MOST_PARTS = 2**17
-# Systems share panels if they turn by at least this part of the largest angle among them in a period.
-_SHARED = 0.6
+# Panels that take as long as to begin with other ones: systems that turn less in a period share those of another until
+# they have so many more than they need.
+_SHARED = 12.0
 # Entries of the largest stack of matrices of a family: as many as fit in a cache.
 _ENTRIES = 500_000
 
@@ -337,12 +338,23 @@ class Nodes:
         return cls(
             fractions=fractions,
             spans=h,
-            spread=np.exp(exponents[:, :, None, :] * (x[:, None] - 0.5)),
+            spread=_spread(modes.eigenvalues, periods, length, nodes),
             half=np.exp(exponents / 2.0),
             reading=read,
             beta=readings(weighted, modes.input.swapaxes(-1, -2)),
             direct=phi.reshape(len(phi), count, nodes, p, n) @ moved.swapaxes(-1, -2),
         )
+
+
+def _spread(eigenvalues: ComplexArray, periods: FloatArray, lengths: FloatArray, nodes: int) -> ComplexArray:
+    """Motions of modes (S, n) from the middle of panels (P,) to their nodes, (S, P, N, n)."""
+    x, _, _ = gauss_rule(nodes)
+    # Panels of one piece are of one length, but for rounding, and nodes as far before the middle as after it.
+    _, first, which = np.unique(np.round(lengths, 12), return_index=True, return_inverse=True)
+    turns = (eigenvalues * periods[:, None])[:, None, None, :] * lengths[first][:, None, None]
+    before = np.exp(turns * (x[: (nodes + 1) // 2, None] - 0.5))
+    both = np.concatenate([before, 1.0 / before[:, :, : nodes // 2][:, :, ::-1]], axis=2)
+    return np.asarray(both[:, which.ravel()], dtype=complex)
 
 
 def _build(
@@ -352,14 +364,16 @@ def _build(
     at = Nodes.of(systems, modes, nodes, start, length)
     systems_, count, p, n = len(systems), start.size, len(systems[0].loads), modes.size
     rows = (at.reading * at.spread[:, :, :, None, :]).reshape(3, systems_, count, nodes * p, n)
-    columns = (at.beta / at.spread[:, :, :, None, :]).reshape(systems_, count, nodes * p, n)
-    kernel = _split(rows) @ np.concatenate([columns.real, columns.imag], axis=-1).swapaxes(-1, -2)
-    window = np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
-    force_on_force = kernel * (at.spans[:, :, None, None] * window)
+    # Backwards they are their own inverses.
+    columns = (at.beta * at.spread[:, :, ::-1, None, :]).reshape(systems_, count, nodes * p, n)
+    columns *= at.spans[:, :, None, None]
+    # Re Σ z β as one product of real matrices, their columns (Re, Im) and (Re, −Im) in turn.
+    force_on_force = rows.view(float) @ columns.conj().view(float).swapaxes(-1, -2)
+    force_on_force *= np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
     blocks = force_on_force[2].reshape(systems_, count, nodes, p, nodes, p)
     blocks[:, :, np.arange(nodes), :, np.arange(nodes), :] += np.moveaxis(at.direct, 2, 0)
 
-    push = (columns * at.half[:, :, None, :]) * (at.spans[:, :, None] * np.repeat(weights, p))[..., None]
+    push = columns * at.half[:, :, None, :] * np.repeat(weights, p)[:, None]
     decay = at.half**2
     free = np.zeros((systems_, count, 2 * n, 2 * n))
     i = np.arange(n)
@@ -766,7 +780,8 @@ def transition_matrices(
         # Panels that resolve one system resolve all that turn a little less in a period.
         panels = systems[0].breakpoints.size + within_reach(turns[order[0]] / panel_angle)
         together = order[: max(1, _ENTRIES // (panels * max(loads, size) * (loads + size)))]
-        together = together[turns[together] >= _SHARED * turns[together[0]]]
+        more = np.cumsum(turns[together[0]] - turns[together]) / panel_angle
+        together = together[: np.count_nonzero(more <= _SHARED)]
         order = order[together.size :]
         family = [systems[number] for number in together.tolist()]
         column = LoadColumn.from_stacked(np.concatenate([LoadColumn.of(x).stacked() for x in family]))

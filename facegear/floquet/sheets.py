@@ -18,8 +18,8 @@ from facegear.support.types import FloatArray
 
 #: Size of the last Chebyshev coefficients along either axis, relative to the largest entry or 1.
 SHEET_TOLERANCE = 1e-11
-# Fewer speeds than this are columns.
-_FEWEST_SPEEDS = 24
+#: Fewer speeds than this are columns.
+FEWEST_SPEEDS = 24
 # Speeds that a sheet must have for each of its Chebyshev points: these crowd where speeds are slow, and cost most.
 _SPEEDS_A_POINT = 1.5
 # Places at which a sheet is tried to end.
@@ -30,8 +30,8 @@ def windows(motions: FrozenMotions, speeds: FloatArray) -> list[tuple[slice, int
     """Parts of ascending speeds in each of which a sheet takes few columns, and its degree along slowness."""
     found: list[tuple[slice, int]] = []
     stop = speeds.size
-    while stop >= _FEWEST_SPEEDS:
-        starts = np.unique(np.linspace(0, stop - _FEWEST_SPEEDS, _TRIALS).astype(int)).tolist()
+    while stop >= FEWEST_SPEEDS:
+        starts = np.unique(np.linspace(0, stop - FEWEST_SPEEDS, _TRIALS).astype(int)).tolist()
         degrees = [motions.degree(1.0 / speeds[stop - 1], 1.0 / speeds[start]) for start in starts]
         saved = [
             stop - start - _SPEEDS_A_POINT * (degree + 1)

@@ -20,10 +20,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.geometry.contact_lines import ContactRegion, root
+from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive
 from facegear.geometry.misalignment import Misalignment
 from facegear.geometry.vectors import Vector, cross, dot, rotated
+from facegear.support.roots import root
 from facegear.support.types import FloatArray
 
 # Local pressure angles between which contact is looked for [rad].

@@ -19,9 +19,10 @@ from scipy.optimize import brentq
 
 from facegear.geometry.action_lines import ActionLines
 from facegear.geometry.contact_lines import ContactRegion
-from facegear.geometry.drive import Drive, involute
+from facegear.geometry.drive import Drive
 from facegear.geometry.hertz import Ellipse, contact_ellipse
 from facegear.geometry.misalignment import ALIGNED, LONGEST, WIDEST, Misalignment
+from facegear.geometry.proportions import involute
 from facegear.support.parameters import finite_array, keep, nonnegative, one_of, within
 from facegear.support.types import FloatArray
 

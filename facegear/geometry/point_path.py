@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import PairStates, TimedPairs
 from facegear.geometry.point_contact import UnloadedContact
+from facegear.geometry.timed_pairs import PairStates, TimedPairs
 from facegear.support.types import FloatArray
 
 

@@ -19,7 +19,7 @@ from facegear.floquet.models import Model, replace_at
 from facegear.floquet.multiplier_curves import FrozenMotions
 from facegear.floquet.multipliers import Method, rounding_error, transition_matrices, with_method
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.sheets import SHEET_TOLERANCE, windows
+from facegear.floquet.sheets import FEWEST_SPEEDS, SHEET_TOLERANCE, windows
 from facegear.floquet.stepping import Family
 from facegear.maps.likeness import same_layout
 from facegear.maps.parallel import parts_of
@@ -89,7 +89,9 @@ def _row(model: Model, speeds: FloatArray, method: Method | None) -> FloatArray:
     """Spectral radii and periods of a model at speeds (S,), shape (2, S)."""
     slowness = 1.0 / speeds
     periods = _periods(model, speeds)
-    planned = windows(FrozenMotions.of(model, slowness[-1], slowness[0]), speeds) if speeds.size > 1 else []
+    planned: list[tuple[slice, int]] = []
+    if speeds.size >= FEWEST_SPEEDS:
+        planned = windows(FrozenMotions.of(model, slowness[-1], slowness[0]), speeds)
     alone = slice(0, planned[-1][0].start if planned else speeds.size)
     # Coordinates in which entries are of comparable size, the same for all that is interpolated.
     scale = Family([model.system(float(speeds[-1]))]).scale

@@ -69,6 +69,10 @@ from facegear.support.types import ComplexArray, FloatArray
 
 # Columns of a map that are computed, and kept on disk, together.
 _CHUNK = 8
+# Degrees of series along parameters for each value of which a model is built.
+_DEGREES = tuple(degree * 2**power for power in range(9) for degree in (8, 10, 12, 14))
+# Columns are taken by series along the parameter whose degree is at most this part of the number of values.
+_MOST_OF_A_COLUMN = 0.8
 # The same on a sheet: each group has a column that is computed to check the others.
 _SHEET_CHUNK = 16
 
@@ -364,13 +368,13 @@ def _column_radii(column: _Column, method: Method | None, degree: int) -> FloatA
 class _Columns:
     """What all columns have in common.
 
-    Motions are those of the first, the middle and the last value; periods those of all values at the first speed.
+    Motions are those of the first, the middle and the last value; `turned` is the period times the speed of each value.
     """
 
     sweep: _Sweep
     loads: LoadSweep | None
     motions: tuple[FrozenMotions, ...]
-    periods: FloatArray
+    turned: FloatArray
 
     def degree(self, speed: float) -> int:
         """Estimate of the degree that a series along the parameter will have."""
@@ -378,16 +382,36 @@ class _Columns:
         # Motions that stop oscillating along the parameter have no partner at its other end.
         if first.size != last.size:
             return LOWEST_DEGREE
-        return degree_between(first / speed, last / speed, SHEET_TOLERANCE)
+        found = degree_between(first / speed, last / speed, SHEET_TOLERANCE)
+        # Models of the points are built once for all columns that have them.
+        return (
+            found if self.loads is not None else next(d for d in _DEGREES if d >= found or d == _DEGREES[-1])
+        )
 
-    def are_smooth(self, slowest: float) -> bool:
-        """Whether matrices may be interpolated along the parameter, or are so cheap that they need not.
+    def smooth_from(self, speeds: FloatArray) -> int:
+        """Find the first of some speeds (S,) from which on columns take few matrices, or are so cheap that they may.
 
-        That is seen at the lowest speed, whose long period asks most of a series.
+        Below it, where a period is long, a series along the parameter would take as many as there are values, as it
+        does everywhere along a logarithmic axis.
         """
-        if self.loads is not None:
-            return True
-        column = self.at(slowest)
+        if self.loads is not None or self._is_smooth(float(speeds[0])):
+            return 0
+        most = int(_MOST_OF_A_COLUMN * len(self.sweep.values))
+        degrees = [self.degree(speed) for speed in speeds.tolist()]
+        start = speeds.size - int(np.argmax([degree > most for degree in degrees[::-1]] + [True]))
+        part = speeds[start:]
+        if part.size == 0:
+            return speeds.size
+        # Rows may be interpolated along speed.
+        planned = windows(self.motions[len(self.motions) // 2], part)
+        alone = planned[-1][0].start if planned else part.size
+        row = alone + sum(degree + 1 for _, degree in planned)
+        fewer = sum(degrees[start:]) + part.size < row * len(self.sweep.values)
+        return start if fewer and self._is_smooth(float(part[0])) else speeds.size
+
+    def _is_smooth(self, speed: float) -> bool:
+        """Whether matrices may be interpolated along the parameter at a speed, and at all faster ones."""
+        column = self.at(speed)
         return with_method(
             self.sweep.method,
             lambda chosen: (
@@ -395,7 +419,7 @@ class _Columns:
                     column.matrices(chosen, column.scale),
                     column.variable,
                     column.smooth,
-                    self.degree(slowest),
+                    self.degree(speed),
                 ).size
                 > 0
             ),
@@ -591,26 +615,34 @@ def _by_cell(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, 
         return None
     radii = np.empty((len(sweep.values), speeds.size))
     places, tasks = cells.tasks()
-    try:
-        for number, result in run(tasks, "stability map", "threads"):
-            radii[places[number]] = result
-        return radii, cells.periods, cells.error_estimate(radii)
-    except UnsuitableSystemError:
+    for number, result in run(tasks, "stability map", "threads"):
+        radii[places[number]] = result
+    periods, left = cells.periods, np.flatnonzero(np.isnan(radii[:, 0]))
+    if left.size == len(sweep.values):
         return None
+    if not left.size:
+        return radii, periods, cells.error_estimate(radii)
+    others = replace(sweep, values=tuple(sweep.values[row] for row in left.tolist()))
+    radii[left], periods[left] = _by_row(others, speeds, run)
+    return radii, periods, _error_estimate(sweep, speeds, radii)
 
 
 def _by_column_or_row(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray, float]:
     """As :func:`_by_cell`, of any models."""
     columns = _columns(sweep, speeds)
-    radii, periods = _by_row(sweep, speeds, run) if columns is None else _by_column(columns, speeds, run)
+    # By rows below that speed, by columns from it on.
+    start = speeds.size if columns is None else columns.smooth_from(speeds)
+    parts = []
+    if start > 0:
+        parts.append(_by_row(sweep, speeds[:start], run))
+    if columns is not None and start < speeds.size:
+        parts.append(_by_column(columns, speeds[start:], run))
+    radii, periods = (np.concatenate(part, axis=1) for part in zip(*parts, strict=True))
     return radii, periods, _error_estimate(sweep, speeds, radii)
 
 
 def _columns(sweep: _Sweep, speeds: FloatArray) -> _Columns | None:
-    """Gather what the columns of a map have in common; nothing where it is no smooth function of its parameter.
-
-    Or so rough a one, as along a logarithmic axis, that a series would take as many matrices as there are values.
-    """
+    """Gather what the columns of a map have in common; nothing where it is no smooth function of its parameter."""
     slowest, fastest = float(speeds[0]), float(speeds[-1])
     probed = [system_at(model, slowest) for model in sweep.probed]
     # Building a system may be most of the work of a row: all are built only if these do not tell.
@@ -624,8 +656,8 @@ def _columns(sweep: _Sweep, speeds: FloatArray) -> _Columns | None:
         return None
     motions = tuple(FrozenMotions.of(model, 1.0 / fastest, 1.0 / slowest) for model in sweep.probed)
     # A fresh copy: models that have been built need not travel to other processes.
-    found = _Columns(replace(sweep), swept, motions, np.array([system.period for system in first]))
-    return found if found.are_smooth(slowest) else None
+    periods = np.array([system.period for system in first]) * slowest
+    return _Columns(replace(sweep), swept, motions, periods)
 
 
 def _by_row(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray]:
@@ -656,7 +688,7 @@ def _by_column(columns: _Columns, speeds: FloatArray, run: _Run) -> tuple[FloatA
     # On sheets all is linear algebra, of whatever models.
     for number, result in run(cells, "cells on sheets", "threads"):
         radii[:, cells[number].place] = result
-    return radii, _periods(columns.sweep, speeds, columns.periods)
+    return radii, _periods(columns.sweep, speeds, columns.turned)
 
 
 def _layout(columns: _Columns, speeds: FloatArray) -> tuple[list[_Chunk], list[_Laid]]:
@@ -670,9 +702,8 @@ def _layout(columns: _Columns, speeds: FloatArray) -> tuple[list[_Chunk], list[_
     return _in_chunks(0, speeds[:stop].tolist(), columns), laid
 
 
-def _periods(sweep: _Sweep, speeds: FloatArray, first: FloatArray) -> FloatArray:
-    """T0 [s] of each cell, (V, S), from those at the first speed: the parameter may be a number of teeth."""
-    turned = first * speeds[0]
+def _periods(sweep: _Sweep, speeds: FloatArray, turned: FloatArray) -> FloatArray:
+    """T0 [s] of each cell, (V, S), from the angle by which it turns in it: the parameter may be a number of teeth."""
     for probe in sweep.probes:
         for speed in (float(speeds[speeds.size // 2]), float(speeds[-1])):
             period = sweep.models[probe].system(speed).period

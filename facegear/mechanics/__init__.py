@@ -7,7 +7,8 @@ compliance (`loaded_contact`, `compliance`, that of plates in `plate_compliance`
 `edge_stiffness`, `pressed_points`, `spreads`, `pressed_stiffness`; 6, 8) and under pinions on the springs of their
 teeth (`mesh_oscillator`, `two_gears`; 8), the gearbox in torsion (`torsional`; 7), with play between its teeth
 (`backlash`; 8), with a damaged one (`tooth_damage`; 8) and with shafts that have mass (`rods`, `exact_rods`,
-`heavy_shafts`; 8), the classical equations (`classical`; 2), the dissertation's own drives (`cases`, `gearboxes`).
+`heavy_shafts`; 8), the classical equations (`classical`, `classical_pairs`; 2), the dissertation's own drives (`cases`,
+`gearboxes`).
 Public: `Body`, `Contact`, `DrivingForce`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`,
 `MeshOscillator`, `TwoGears`.
 """

@@ -24,15 +24,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
-from facegear.geometry.contact_lines import crossing
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import merged
 from facegear.geometry.misalignment import ALIGNED, Misalignment
+from facegear.geometry.timed_pairs import merged
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.plate_compliance import PlateCompliance
 from facegear.mechanics.slices import Slices
 from facegear.mechanics.torsional import checked_factor, mesh_stiffness
 from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
+from facegear.support.roots import crossing
 from facegear.support.types import FloatArray
 
 # Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.

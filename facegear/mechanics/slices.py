@@ -22,10 +22,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.series import ChebyshevSeries
-from facegear.geometry.contact_lines import ContactRegion, crossing, root
+from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive
 from facegear.geometry.misalignment import ALIGNED, Misalignment
 from facegear.geometry.point_contact import UnloadedContact
+from facegear.support.roots import crossing, root
 from facegear.support.types import FloatArray
 
 # Local pressure angles beyond the edges of the face that are looked at too [rad], and where a flank cannot reach.

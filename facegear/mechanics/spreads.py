@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.geometry.drive import DEDENDUM, Drive
+from facegear.geometry.drive import Drive
+from facegear.geometry.proportions import DEDENDUM
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pressed_points import PressedPoints, Spread, require_spread
 from facegear.support.parameters import keep, nonnegative, within

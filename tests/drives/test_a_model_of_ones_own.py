@@ -18,7 +18,7 @@ from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import mesh_period
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.maps.sensitivity import sensitivity
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import borders, tongues

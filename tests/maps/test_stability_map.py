@@ -23,7 +23,7 @@ from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import borders
 from facegear.mechanics import cases
 from facegear.mechanics.cases import FIGURES
-from facegear.mechanics.classical import GearPair
+from facegear.mechanics.classical_pairs import GearPair
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s
@@ -259,6 +259,31 @@ def test_only_load_parameters_take_the_shared_column(monkeypatch):
     stability_map(TRANSVERSE, [10.0], "mass", [0.1, 0.2], jobs=1)
     with pytest.raises(AssertionError, match="column of load parameters"):
         stability_map(TRANSVERSE, [10.0], "thickness_ratio", [0.03, 0.04], jobs=1)
+
+
+def test_a_parameter_too_fast_for_series_at_low_speeds_is_interpolated_at_high_ones(monkeypatch):
+    """Rows below some speed, whose long periods ask for as many matrices as there are values, columns from it on."""
+    seen = {}
+
+    def watched(name, whole):
+        def route(prepared, speeds, run):
+            seen[name] = speeds.size
+            return whole(prepared, speeds, run)
+
+        return route
+
+    for name in ("_by_row", "_by_column"):
+        monkeypatch.setattr(maps, name, watched(name, getattr(maps, name)))
+    speeds, values = rad_per_s(np.array([60.0, 120.0, 480.0, 950.0])), np.linspace(0.025, 0.045, 41)
+    chart = stability_map(TRANSVERSE, speeds, "thickness_ratio", values, jobs=1)
+    assert seen == {"_by_row": 2, "_by_column": 2}
+    check_cells(TRANSVERSE, chart, "thickness_ratio", AdaptiveMagnus(1e-11), rtol=1e-7)
+    periods = [TRANSVERSE.system(speed).period for speed in speeds.tolist()]
+    alone = [stability_map(TRANSVERSE, [speed], "thickness_ratio", values[7:9], jobs=1) for speed in speeds]
+    for column, own in enumerate(alone):
+        np.testing.assert_allclose(
+            chart[7:9, column] * periods[column], own[:, 0] * periods[column], atol=1e-9
+        )
 
 
 def test_load_parameters_that_depend_on_speed_are_not_mistaken():

@@ -10,7 +10,8 @@ from facegear.design.envelope import disk_growth_rate
 from facegear.floquet.modes import natural_exponents
 from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
-from facegear.geometry.kinematics import ContactPath, mesh_period
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_matrices, mirror_signs
 from facegear.mechanics.mesh_oscillator import FOLLOWED, MeshOscillator

@@ -154,7 +154,7 @@ def edge_load() -> Figure:
         linewidth=2.0,
         mutation_scale=15,
     )
-    note(left, (1.86, 0.5), "$F_t$", ha="left", color=VERMILION)
+    note(left, (1.8, 1.36), "$F_t$", ha="left", color=VERMILION)
     note(left, (0.45, 0.95), "$a$")
     turn(left, (0.0, 0.0), 1.25, (110.0, 190.0))
     note(left, (-0.75, 0.55), r"$\Omega_2$")

@@ -22,6 +22,7 @@ from facegear.plotting.style import (
     VERMILION,
     draw_border,
     draw_unstable,
+    growth_bar,
     panels,
     styled,
 )
@@ -210,5 +211,5 @@ def stability_maps(charts: Mapping[str, xr.Dataset]) -> Figure:
     axes[0].plot([], [], ".", color=VERMILION, label="traced borders (Floquet)")
     axes[0].plot([], [], "|--", color=ORANGE, label="bands after Hsu")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure

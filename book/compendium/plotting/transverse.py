@@ -18,6 +18,7 @@ from facegear.plotting.style import (
     VERMILION,
     draw_border,
     draw_unstable,
+    growth_bar,
     panels,
     styled,
 )
@@ -133,7 +134,7 @@ def stability_maps(
         _draw_windows(ax, chart, windows[title])
         ax.set_title(title, loc="left")
     axes[-1].set_xlabel(_SPEED)
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 
@@ -181,7 +182,7 @@ def wide_maps(
         ax.set_title(title, loc="left")
     axes[-2].set_xlabel(_SPEED)
     axes[-1].set_xlabel("unstable speeds [%]")
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 
@@ -204,7 +205,7 @@ def compared_maps(charts: Mapping[str, xr.Dataset], columns: int = 2) -> Figure:
         ax.set_title(title, loc="left", fontsize=10)
         if place // columns == rows - 1:
             ax.set_xlabel(_SPEED)
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 
