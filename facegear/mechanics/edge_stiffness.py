@@ -18,9 +18,10 @@ from facegear.floquet.series import ChebyshevSeries
 from facegear.geometry.drive import Drive
 from facegear.mechanics.disk import mirror_signs, unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
-from facegear.mechanics.plate import Body, plate_quadrature
+from facegear.mechanics.plate import Body
 from facegear.mechanics.pressed_points import Spread, points_on, require_spread
 from facegear.mechanics.pressed_stiffness import pressed_stiffness
+from facegear.mechanics.radial_modes import plate_quadrature
 from facegear.mechanics.spreads import RIM_POINT
 from facegear.support.parameters import (
     designed,

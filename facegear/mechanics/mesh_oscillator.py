@@ -38,7 +38,7 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
-from facegear.mechanics.plate import RadialModes
+from facegear.mechanics.radial_modes import RadialModes
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.mechanics.transverse import MOST_PERIODS, PinionsOnDisk, Transverse
 from facegear.support.parameters import designed, finite_array, keep, nonnegative, positive, within

@@ -38,7 +38,8 @@ from facegear.mechanics.disk import (
     unit_shape,
 )
 from facegear.mechanics.edge_stiffness import DrivingForce
-from facegear.mechanics.plate import Body, RadialModes
+from facegear.mechanics.plate import Body
+from facegear.mechanics.radial_modes import RadialModes
 from facegear.support.parameters import MeshLoad, designed, finite_array, keep, positive, within
 from facegear.support.types import FloatArray
 
