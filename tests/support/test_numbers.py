@@ -13,7 +13,7 @@ from compendium.datasets.modulation import ScaledModulation
 from facegear.design import cancellation, envelope
 from facegear.design import teeth as tooth_design
 from facegear.design.body import Requirements
-from facegear.drives.explore import Quantity
+from facegear.drives.studies.study import Quantity
 from facegear.floquet.columns import column_spectral_radii
 from facegear.floquet.models import is_part
 from facegear.floquet.multipliers import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus, Stepwise

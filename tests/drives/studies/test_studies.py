@@ -6,12 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from facegear.drives.explore import (
-    Choice,
-)
 from facegear.drives.studies.drive import drive_study
 from facegear.drives.studies.gearbox import damage_study, gearbox_study, shafts_study
 from facegear.drives.studies.oscillator import SQUARE, oscillator_study
+from facegear.drives.studies.study import Choice
 from facegear.drives.studies.teeth import BOTH, teeth_study
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
