@@ -30,7 +30,7 @@ from facegear.geometry.timed_pairs import merged
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.plate_compliance import PlateCompliance
 from facegear.mechanics.slices import Slices
-from facegear.mechanics.torsional import checked_factor, mesh_stiffness
+from facegear.mechanics.tooth_stiffness import checked_factor, mesh_stiffness
 from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
 from facegear.support.roots import crossing
 from facegear.support.types import FloatArray

@@ -27,7 +27,7 @@ from facegear.mechanics.loaded_contact import (
     fit_tolerances,
     require_kinds,
 )
-from facegear.mechanics.torsional import checked_factor
+from facegear.mechanics.tooth_stiffness import checked_factor
 from facegear.support.parameters import STEEL, Material, keep, one_of
 from facegear.support.types import FloatArray
 

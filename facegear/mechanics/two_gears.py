@@ -90,7 +90,7 @@ class TwoGears:
     Examples
     --------
     >>> from facegear.mechanics.plate import Body
-    >>> from facegear.mechanics.torsional import mesh_stiffness
+    >>> from facegear.mechanics.tooth_stiffness import mesh_stiffness
     >>> from facegear.support.parameters import MeshLoad
     >>> body, load = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0)
     >>> angles = tuple(body.drive.angular_pitch * teeth for teeth in (0, 65))

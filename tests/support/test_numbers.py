@@ -27,7 +27,15 @@ from facegear.geometry.skew_line import SkewLine
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import tongues
-from facegear.mechanics import cases, classical, classical_pairs, disk, radial_modes, torsional
+from facegear.mechanics import (
+    cases,
+    classical,
+    classical_pairs,
+    disk,
+    radial_modes,
+    tooth_stiffness,
+    torsional,
+)
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.gearboxes import FIGURES
@@ -113,7 +121,7 @@ FUNCTIONS = {
     ),
     "mesh_frequency": (CLASSICAL[-1].system, {"mesh_frequency": 2.0}),
     "mesh_period": (lambda speed: mesh_period(DRIVE, speed), {"speed": 50.3}),
-    "mesh_stiffness": (lambda c: torsional.mesh_stiffness(BOX.drive, c), {"c": 0.3}),
+    "mesh_stiffness": (lambda c: tooth_stiffness.mesh_stiffness(BOX.drive, c), {"c": 0.3}),
     "cylinder_inertia": (torsional.cylinder_inertia, {"radius": 0.1, "height": 0.3, "density": 7000.0}),
     "natural_speed": (
         lambda frequency: torsional.natural_speed(BOX.drive, frequency),

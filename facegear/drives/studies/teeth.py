@@ -21,7 +21,7 @@ from facegear.mechanics import cases
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.sharing import RULES
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
 
 ALONE, FRONT, BOTH, BETWEEN = "one", "two on one face", "one on either face", "one between two gears"

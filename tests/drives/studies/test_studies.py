@@ -20,7 +20,8 @@ from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.sharing import shared_load
-from facegear.mechanics.torsional import Torsional, mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
+from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import Material, MeshLoad
 from tests.drives.studies.models import THREE
