@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +18,7 @@ from facegear.design.changes import effects_of_changes
 from facegear.drives.assessment import Assessment
 from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share, with_basis
 from facegear.drives.contacts import massless, torsional_under
-from facegear.drives.disk_response import disk_responses
+from facegear.drives.disk_response import RESPONSE_SPEEDS, disk_response
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION, best_change
 from facegear.drives.outcome import Outcome
@@ -41,18 +40,21 @@ from facegear.drives.variants import (
 from facegear.drives.verdict import FORCES, driven
 from facegear.floquet.models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
-from facegear.maps.parallel import each_in_processes, in_processes
+from facegear.maps.crew import Crew
 from facegear.maps.response_map import frequency_response
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import number_of_workers
+from facegear.support.types import FloatArray
 
 _ARMS = {"printed": "arm as printed", "conjugate": "arm of conjugate teeth"}
 # Bases tried for other teeth than the file's, the first of them one in which those stand still.
 _MORE_BASES = 3
-# Speeds of the forced response in torsion.
-_RESPONSE_SPEEDS = 91
+# Speeds of the response in torsion.
+_TORSION_SPEEDS = 91
+# Urgency of cases, which other models wait for, above that of any size of a model.
+_CASES_FIRST = 1e6
 
 
 def assess(
@@ -104,58 +106,153 @@ def assess(
     ('depends', ('the contact', 'the direction of the driving force', 'the teeth'))
     """
     number_of_workers("jobs", jobs)
-    say = tell or (lambda words: None)
-    speeds = file.requirements.speeds
-    contacts = plain_contacts(file)
-    cases = [
-        Variant(name, words, own_teeth(file), driven(file, force, with_own_teeth(file, contact)))
-        for name, contact in contacts.items()
-        for force, words in FORCES.items()
-    ]
-    first = tongues(cases[0].model, speeds, progress=False)
-    share = 100 * unstable_share(first, speeds)
-    say(f"the drive as its file has it, in the basis of the file: unstable at {share:.3g} % of the speeds")
-    outcomes: list[Outcome] = []
-    refused: list[str] = []
-    others: list[Variant] = []
-    settle = partial(settled_tongues, tolerance=tolerance, most_steps=most_steps)
-    work = [(case.model, speeds, None if number else first) for number, case in enumerate(cases)]
-    for case, found in zip(cases, each_in_processes(settle, work, jobs), strict=True):
-        outcomes.append(Outcome(replace(case, model=found.model), found.tongues, found.settled))
+    found = _Found(file, tolerance, most_steps, tell or (lambda words: None))
+    with Crew(jobs) as crew:
+        found.begin(crew)
+        for name, result in crew.results():
+            found.take(crew, name, result)
+    return found.assessment()
+
+
+class _Found:
+    """What has been found, piece by piece, and what each piece brings along."""
+
+    def __init__(
+        self, file: DriveFile, tolerance: float, most_steps: int, say: Callable[[str], object]
+    ) -> None:
+        self.file, self.say, self.speeds = file, say, file.requirements.speeds
+        self.settings = (self.speeds, tolerance)
+        self.most_steps = most_steps
+        self.contacts = plain_contacts(file)
+        self.cases = [
+            Variant(name, words, own_teeth(file), driven(file, force, with_own_teeth(file, contact)))
+            for name, contact in self.contacts.items()
+            for force, words in FORCES.items()
+        ]
+        # Of each case and of the teeth besides the file's in it, by number of the case and of the teeth: 0 its own.
+        self.outcomes: dict[tuple[int, int], Outcome] = {}
+        self.refused: dict[tuple[int, int], list[str]] = {}
+        self.others: dict[tuple[int, int], Variant] = {}
+        self.torsion = _in_torsion(file, self.contacts)
+        self.found: dict[tuple[str, Any], Any] = {}
+
+    def begin(self, crew: Crew) -> None:
+        """Look for the first verdict here while the second case is at work, then let all cases and torsion follow."""
+        # No more beside it, or what somebody waits for would take longer.
+        self._add_case(crew, 1, self.cases[1])
+        first = tongues(self.cases[0].model, self.speeds, progress=False)
+        share = 100 * unstable_share(first, self.speeds)
+        self.say(
+            f"the drive as its file has it, in the basis of the file: unstable at {share:.3g} % of the speeds"
+        )
+        self._add_case(crew, 0, self.cases[0], first)
+        for number, case in enumerate(self.cases[2:], 2):
+            self._add_case(crew, number, case)
+        for name, work in self.torsion.items():
+            crew.add(("torsion", name), 0.0, tongues, *work)
+        if (torsional := self.file.torsional) is not None:
+            crew.add(("response", ""), 0.0, _response, self.file, torsional)
+            if self.file.tolerances.given_in_torsion:
+                self._add_worst(crew, TORSION, worst_case_in_torsion, torsional)
+
+    def _add_case(self, crew: Crew, number: int, case: Variant, *known: Sequence[Tongue]) -> None:
+        work = (case.model, *self.settings, self.most_steps, *known)
+        crew.add(("case", number), _CASES_FIRST, _settled, *work)
+
+    def _add_worst(self, crew: Crew, name: str, find: Callable[..., WorstCase], model: Any) -> None:
+        size = float(len(model.coordinates))
+        crew.add(("worst", name), size, _at_worst, find, model, self.speeds, self.file.tolerances)
+
+    def take(self, crew: Crew, name: Any, result: Any) -> None:
+        """Keep a result, and add what it brings along."""
+        kind, which = name
+        if kind == "case":
+            self._take_case(crew, which, result)
+        elif kind == "teeth":
+            self._take_teeth(crew, which, result)
+        else:
+            self.found[kind, which] = result
+
+    def _take_case(self, crew: Crew, number: int, found: SettledTongues) -> None:
+        case = replace(self.cases[number], model=found.model)
+        self._keep(crew, (number, 0), Outcome(case, found.tongues, found.settled))
         # Where two bases agree for the file's teeth, the smaller is where the others begin.
         start = found.steps[-2:][0]
         own = replace(case, model=with_basis(case.model, start.nodal_circles, start.nodal_diameters))
-        variants, reasons = other_teeth(file, own, contacts[case.contact])
-        others += variants
-        refused += reasons
+        variants, reasons = other_teeth(self.file, own, self.contacts[case.contact])
+        self.refused[number, 0] = reasons
+        bases = min(_MORE_BASES, self.most_steps)
+        for place, variant in enumerate(variants, 1):
+            self.others[number, place] = variant
+            size = float(len(variant.model.coordinates))
+            crew.add(("teeth", (number, place)), size, _tried, variant.model, *self.settings, bases)
+        # Those of the file's own contact and teeth.
+        if number < len(FORCES) and self.file.tolerances.given:
+            self._add_worst(crew, case.force, worst_case, found.model)
+        settled = sum(place == 0 for _, place in self.outcomes)
         share = 100 * found.unstable_share
-        say(f"case {len(outcomes)} of {len(cases)}: unstable at {share:.3g} % of the speeds ({case.name})")
-    # The longest first, so that no processor waits for another at the end.
-    others.sort(key=lambda variant: -len(variant.model.coordinates))
-    bases = min(_MORE_BASES, most_steps)
-    trials = [(variant.model, speeds, tolerance, bases) for variant in others]
-    for number, (variant, tried) in enumerate(
-        zip(others, each_in_processes(_tried, trials, jobs), strict=True)
-    ):
+        self.say(
+            f"case {settled} of {len(self.cases)}: unstable at {share:.3g} % of the speeds ({case.name})"
+        )
+        if settled == len(self.cases):
+            self._add_change(crew)
+
+    def _take_teeth(self, crew: Crew, which: tuple[int, int], tried: _Tried) -> None:
+        variant = self.others[which]
         if tried.found is None:
-            refused.append(f"{variant.name}: {tried.reason}")
+            self.refused[which] = [f"{variant.name}: {tried.reason}"]
         else:
             here = replace(variant, model=tried.found.model)
-            outcomes.append(Outcome(here, tried.found.tongues, tried.found.settled))
-        say(f"other teeth {number + 1} of {len(others)}: {variant.name}")
-    worst = _worst(file, outcomes[:2], jobs)
-    torsion = _torsion(file, contacts, jobs)
-    say("tolerances and torsion are done; forced response and the change that helps most are looked for")
-    return Assessment(
-        file=file,
-        outcomes=tuple(outcomes),
-        torsion=torsion,
-        worst=worst,
-        response=_response(file, jobs, refused),
-        change=_change(file, outcomes),
-        left_out=tuple(dict.fromkeys(refused)),
-        disk_responses=disk_responses(file, outcomes, jobs),
-    )
+            self._keep(crew, which, Outcome(here, tried.found.tongues, tried.found.settled))
+        done = sum(place > 0 for _, place in {**self.outcomes, **self.refused})
+        self.say(f"other teeth {done} of {len(self.others)} known so far: {variant.name}")
+
+    def _keep(self, crew: Crew, which: tuple[int, int], outcome: Outcome) -> None:
+        self.outcomes[which] = outcome
+        if outcome.variant.contact == self.cases[0].contact:
+            force = self.file.requirements.pinion_torque / self.file.drive.base_radius
+            crew.add(("disk", which), 1.0, disk_response, outcome, force, self._charted)
+
+    @property
+    def _charted(self) -> FloatArray:
+        return np.linspace(*self.speeds, RESPONSE_SPEEDS)
+
+    def _add_change(self, crew: Crew) -> None:
+        """Look for what helps the first unstable case, as soon as it is known which."""
+        own = (self.outcomes[number, 0] for number in range(len(self.cases)))
+        if (unstable := next((outcome for outcome in own if outcome.tongues), None)) is not None:
+            size = float(len(unstable.variant.model.coordinates))
+            crew.add(("change", ""), size, _change, self.file, unstable)
+
+    def assessment(self) -> Assessment:
+        """Put everything together, in an order that does not depend on what was done first."""
+        own = [(number, 0) for number in range(len(self.cases))]
+        others = sorted(self.others, key=lambda which: -len(self.others[which].model.coordinates))
+        order = [which for which in (*own, *others) if which in self.outcomes]
+        outcomes = tuple(self.outcomes[which] for which in order)
+        refused = [reason for which in (*own, *others) for reason in self.refused.get(which, ())]
+        response, reason = self.found.get(("response", ""), (None, "the file has no section gearbox"))
+        refused += [f"dynamic load of the teeth in torsion: {reason}"] * bool(reason)
+        change = self.found.get(("change", ""))
+        if change is None:
+            unstable = next((outcome for outcome in outcomes if outcome.tongues), None)
+            change = "" if unstable is None else _change(self.file, unstable)
+        return Assessment(
+            file=self.file,
+            outcomes=outcomes,
+            torsion={name: self.found["torsion", name] for name in self.torsion},
+            worst={
+                name: self.found["worst", name]
+                for name in (*FORCES.values(), TORSION)
+                if ("worst", name) in self.found
+            },
+            response=response,
+            change=change,
+            left_out=tuple(dict.fromkeys(refused)),
+            disk_responses=tuple(
+                self.found["disk", which] for which in order if ("disk", which) in self.found
+            ),
+        )
 
 
 class _Tried(NamedTuple):
@@ -172,30 +269,28 @@ def _tried(model: FaceGears, speeds: tuple[float, float], tolerance: float, most
         return _Tried(None, str(error))
 
 
-def _torsion(file: DriveFile, contacts: Mapping[str, Contact], jobs: int) -> dict[str, tuple[Tongue, ...]]:
-    """Tongues in torsion under each contact and each arm of the mesh force, the file's own first."""
+def _settled(
+    model: FaceGears,
+    speeds: tuple[float, float],
+    tolerance: float,
+    most_steps: int,
+    known: Sequence[Tongue] | None = None,
+) -> SettledTongues:
+    return settled_tongues(model, speeds, known, tolerance=tolerance, most_steps=most_steps)
+
+
+def _in_torsion(
+    file: DriveFile, contacts: Mapping[str, Contact]
+) -> dict[str, tuple[Any, tuple[float, float]]]:
+    """Models of torsion under each contact and each arm, the file's own first, and speeds with their tolerance."""
     if file.torsional is None:
         return {}
-    own = massless(file.torsional).arm
-    models = {
-        f"{name}, {_ARMS[arm]}": torsional_under(file.torsional, contact, file.drive, arm)
+    own, wide = massless(file.torsional).arm, file.tolerances.widened(file.requirements.speeds)
+    return {
+        f"{name}, {_ARMS[arm]}": (torsional_under(file.torsional, contact, file.drive, arm), wide)
         for arm in sorted(_ARMS, key=lambda arm: arm != own)
         for name, contact in contacts.items()
     }
-    speeds = file.tolerances.widened(file.requirements.speeds)
-    found = in_processes(tongues, [(model, speeds) for model in models.values()], jobs)
-    return dict(zip(models, found, strict=True))
-
-
-def _worst(file: DriveFile, own: Sequence[Outcome], jobs: int) -> dict[str, WorstCase]:
-    work: dict[str, tuple[Any, ...]] = {}
-    if file.tolerances.given:
-        work |= {outcome.variant.force: (worst_case, outcome.variant.model) for outcome in own}
-    if file.tolerances.given_in_torsion and file.torsional is not None:
-        work[TORSION] = (worst_case_in_torsion, file.torsional)
-    where = (file.requirements.speeds, file.tolerances)
-    found = in_processes(_at_worst, [(*each, *where) for each in work.values()], jobs)
-    return dict(zip(work, found, strict=True))
 
 
 def _at_worst(
@@ -207,28 +302,21 @@ def _at_worst(
         return not_known(str(error), speeds, tolerances)
 
 
-def _response(file: DriveFile, jobs: int, refused: list[str]) -> xr.Dataset | None:
-    """Steady response in torsion to the torque of one pinion's power."""
-    if file.torsional is None:
-        refused.append("dynamic load of the teeth: the file has no section gearbox")
-        return None
+def _response(file: DriveFile, torsional: Any) -> tuple[xr.Dataset | None, str]:
+    """Steady response in torsion to the torque of one pinion's power, or why there is none."""
     torque = file.requirements.pinion_torque * file.drive.gear_ratio
-    at_load = np.zeros(len(file.torsional.coordinates))
+    at_load = np.zeros(len(torsional.coordinates))
     at_load[2] = -torque
-    loaded = Excited(file.torsional, force=PiecewiseChebyshev.constant(at_load))
-    speeds = np.linspace(*file.requirements.speeds, _RESPONSE_SPEEDS)
+    loaded = Excited(torsional, force=PiecewiseChebyshev.constant(at_load))
+    speeds = np.linspace(*file.requirements.speeds, _TORSION_SPEEDS)
     try:
-        return frequency_response(loaded, speeds, jobs=jobs, progress=False)
+        return frequency_response(loaded, speeds, jobs=1, progress=False), ""
     except ArithmeticError as error:
-        refused.append(f"dynamic load of the teeth: {error}")
-        return None
+        return None, str(error)
 
 
-def _change(file: DriveFile, outcomes: Sequence[Outcome]) -> str:
-    """Say which change helps the first unstable model most."""
-    unstable = next((outcome for outcome in outcomes if outcome.tongues), None)
-    if unstable is None:
-        return ""
+def _change(file: DriveFile, unstable: Outcome) -> str:
+    """Say which change helps an unstable model most."""
     speeds = file.requirements.speeds
     effects = effects_of_changes(unstable.variant.model, unstable.tongues, speeds, describe(file))
     return " ".join(best_change(unstable.variant.name, effects, unstable.tongues))

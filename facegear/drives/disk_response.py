@@ -16,14 +16,12 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from facegear.drives.basis import unstable_share
-from facegear.drives.drive_file import DriveFile
+from facegear.drives.basis import unstable_share, with_basis
 from facegear.drives.outcome import Outcome
 from facegear.drives.variants import Variant
 from facegear.floquet.models import Coordinate, system_at
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
-from facegear.maps.parallel import in_processes
 from facegear.maps.response_map import frequency_response
 from facegear.mechanics.disk import modal_mass
 from facegear.mechanics.transverse import FaceGears
@@ -38,8 +36,16 @@ _TWO_GEARS = "between two gears, where flanks press on both sides of a tooth, it
 
 # Part of what teeth give way below which a change of it is rounding.
 _ROUNDING = 1e-9
-# Speeds of the response, and the part of them that may be unstable: where little is steady there is little to say.
-_SPEEDS, _MOST_UNSTABLE = 91, 0.5
+# Nodal circles of the response. A third one changed the forces of Case I at fifteen speeds by 4 % at most, two nodal
+# diameters by tens of percent at some; it takes twice as long.
+_CIRCLES = 2
+# Part of its speed to which a resonance is found.
+_RESOLUTION = 1e-4
+# Part of the speeds that may be unstable: where little is steady there is little to say.
+_MOST_UNSTABLE = 0.5
+
+RESPONSE_SPEEDS = 46
+"""Speeds of a forced response of the disk, besides those at which the mesh meets a natural frequency between them."""
 
 
 @dataclass(frozen=True)
@@ -96,12 +102,31 @@ class DiskResponse:
         normal [N], without the static one.
     reason : str
         Why there is none; empty where there is one.
+    before : float
+        By how much the force departs from the static one at most, as :attr:`largest`, in a basis with two nodal
+        diameters fewer [N]; NaN where there is none.
     """
 
     variant: Variant
     error: float
     data: xr.Dataset | None
     reason: str
+    before: float = math.nan
+
+
+def _largest(data: xr.Dataset) -> tuple[float, float]:
+    """By how much the force of a mesh departs from the static one at most [N], and at which speed [rad/s]."""
+    known = data.dropna("speed", subset=["force_highest"])
+    speeds = np.concatenate([np.repeat(known.speed.values, known.sizes["load"]), data["peak_speed"].values])
+    ends = [
+        np.concatenate([known[f"force_{end}"].values.ravel(), data[f"peak_force_{end}"].values])
+        for end in ("lowest", "highest")
+    ]
+    departs = np.abs(ends).max(axis=0)
+    if not departs.size:
+        return math.nan, math.nan
+    at = int(departs.argmax())
+    return float(departs[at]), float(speeds[at])
 
 
 def transmission_error(variant: Variant, force: float) -> PiecewiseChebyshev | str:
@@ -141,30 +166,8 @@ def _without_mean(error: PiecewiseChebyshev) -> PiecewiseChebyshev:
     return PiecewiseChebyshev(error.breakpoints, coefficients)
 
 
-def disk_responses(file: DriveFile, outcomes: Sequence[Outcome], jobs: int) -> tuple[DiskResponse, ...]:
-    """Find the forced response of every model that has the file's own contact, in the basis in which it is known.
-
-    Parameters
-    ----------
-    file : DriveFile
-    outcomes : sequence of Outcome
-        The file's own contact and teeth first.
-    jobs : int
-        Number of processes, as joblib's ``n_jobs``.
-
-    Returns
-    -------
-    tuple of DiskResponse
-        In the order of the outcomes.
-    """
-    own = [each for each in outcomes if each.variant.contact == outcomes[0].variant.contact]
-    force = file.requirements.pinion_torque / file.drive.base_radius
-    speeds = np.linspace(*file.requirements.speeds, _SPEEDS)
-    return tuple(in_processes(disk_response, [(each, force, speeds) for each in own], jobs))
-
-
 def disk_response(outcome: Outcome, force: float, speeds: FloatArray) -> DiskResponse:
-    """Find the forced response of one model.
+    """Find the forced response of one model, with at most two nodal circles.
 
     Parameters
     ----------
@@ -188,7 +191,14 @@ def disk_response(outcome: Outcome, force: float, speeds: FloatArray) -> DiskRes
         if share > _MOST_UNSTABLE:
             few = f"nothing is steady at {100 * share:.3g} % of the speeds, where it is unstable"
             return DiskResponse(variant, size, None, few)
-        return DiskResponse(variant, size, normal_forces(variant.model, error, speeds), "")
+        body = variant.model.gear.body
+        circles, diameters = min(body.nodal_circles, _CIRCLES), body.nodal_diameters
+        model = with_basis(variant.model, circles, diameters)
+        data, before = normal_forces(model, error, speeds), math.nan
+        if diameters > 2:
+            fewer = with_basis(variant.model, circles, diameters - 2)
+            before = _largest(normal_forces(fewer, error, speeds))[0]
+        return DiskResponse(replace(variant, model=model), size, data, "", before)
     except (ArithmeticError, ValueError) as problem:
         return DiskResponse(variant, 0.0, None, str(problem))
 
@@ -215,7 +225,9 @@ def normal_forces(model: FaceGears, error: PiecewiseChebyshev, speeds: FloatArra
     along_axis = math.sin(body.drive.pressure_angle)
     shaken = Shaken(model, error.transformed([[1.0 / along_axis]]))
     meshes = shaken.meshes(len(shaken.system(float(speeds[0])).loads))
-    found = frequency_response(shaken, speeds, together=meshes, jobs=1, progress=False)
+    found = frequency_response(
+        shaken, speeds, together=meshes, resolution=_RESOLUTION, jobs=1, progress=False
+    )
     # Models of the disk are divided by 2πρh, as (4-8).
     scale = modal_mass(body) / along_axis
     names = [str(name) for name in found.data_vars if "force" in str(name)]
@@ -262,14 +274,7 @@ def _sentence(found: DiskResponse, data: xr.Dataset, static: float) -> str:
     where = f"{variant.contact}; {variant.force}; {variant.teeth}"
     if not known.sizes["speed"]:
         return f"Forced response of the disk ({where}): unstable at all speeds looked at, nothing is steady."
-    speeds = np.concatenate([np.repeat(known.speed.values, known.sizes["load"]), data["peak_speed"].values])
-    ends = [
-        np.concatenate([known[f"force_{end}"].values.ravel(), data[f"peak_force_{end}"].values])
-        for end in ("lowest", "highest")
-    ]
-    departs = np.abs(ends).max(axis=0)
-    at = int(departs.argmax())
-    largest, speed = float(departs[at]), float(rpm(speeds[at]))
+    largest, speed = _largest(data)
     parted = int((known["force_lowest"].min("load").values < -static).sum())
     count, every = known.sizes["speed"], data.sizes["speed"]
     resonance = ""
@@ -277,11 +282,14 @@ def _sentence(found: DiskResponse, data: xr.Dataset, static: float) -> str:
         top = int(data["peak_force_rms"].values.argmax())
         place = float(rpm(data["peak_speed"].values[top]))
         resonance = f"; its strongest resonance is {data['peak_label'].values[top]} at {place:.4g} rpm"
+    before = ""
+    if math.isfinite(found.before):
+        before = f" In a basis with two nodal diameters fewer it would be {found.before:.4g} N."
     return (
         f"Forced response of the disk ({where}): a static transmission error of {1e6 * found.error:.3g} µm from peak "
         f"to peak, under the load of the drive, and as long as flanks do not part, moves the force of a "
-        f"mesh by up to {largest:.4g} N, at {speed:.4g} rpm: {largest / static:.3g} times the static {static:.4g} "
-        f"N{resonance}. Of {every} speeds it is stable at "
+        f"mesh by up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / static:.3g} times the static {static:.4g} "
+        f"N{resonance}.{before} Of {every} speeds it is stable at "
         f"{count}, and flanks would part at {parted}."
     )
 

@@ -280,8 +280,8 @@ def _on_panels(
     whole, moved = np.eye(size), np.zeros(size)
     into = _jumps(system, panels.edges[:-1])
     for jump, step, offset in zip(into, panels.steps, panels.offsets, strict=True):
-        moved = step @ (jump @ moved) + offset
-        whole = step @ (jump @ whole)
+        moved = step @ _jumped(jump, moved) + offset
+        whole = step @ _jumped(jump, whole)
     scaled = family.scale @ whole @ family.inverse_scale
     if not np.isfinite(scaled).all():
         raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
@@ -303,7 +303,7 @@ def _on_panels(
     state = family.inverse_scale @ np.linalg.solve(away, family.scale @ moved)
     starts = []
     for jump, step, offset in zip(into, panels.steps, panels.offsets, strict=True):
-        starts.append(jump @ state)
+        starts.append(_jumped(jump, state))
         state = step @ starts[-1] + offset
     inside = panels.inside(np.array(starts))
     coefficients = _to_series(panels) @ inside
@@ -340,9 +340,14 @@ def _roughly_known(system: PeriodicSystem, panels: MotionPanels) -> NDArray[np.b
     return rough
 
 
-def _jumps(system: PeriodicSystem, starts: FloatArray) -> list[FloatArray]:
-    """Jumps of the state at the starts of panels, unit matrices where there are none."""
-    matrices = [np.eye(2 * system.size)] * starts.size
+def _jumped(jump: FloatArray | None, state: FloatArray) -> FloatArray:
+    """States after a jump, if there is one."""
+    return state if jump is None else jump @ state
+
+
+def _jumps(system: PeriodicSystem, starts: FloatArray) -> list[FloatArray | None]:
+    """Jumps of the state at the starts of panels, None where there are none."""
+    matrices: list[FloatArray | None] = [None] * starts.size
     for at, jump in system.state_jumps():
         matrices[int(np.abs(starts - at).argmin())] = jump
     return matrices

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,7 +20,7 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.response import SteadyResponse, steady_response
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.stability_map import checked_speeds, checked_values, speed_coordinates
-from facegear.support.parameters import number_of_workers
+from facegear.support.parameters import number_of_workers, within
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
@@ -33,7 +32,7 @@ _CHUNK = 16
 # What is said of the displacement and of the force of each load, in the order of the results.
 _STATISTICS = ("mean", "rms", "lowest", "highest")
 _QUANTITIES = {"displacement": "u of the load", "force": "force of the load"}
-# Part of its speed to which that of a peak is found: the square of what this is of its width is missing in its height.
+# Part of its speed to which that of a peak is found.
 _RESOLUTION = 1e-8
 # Harmonics of the mesh that are looked for between speeds.
 _HARMONICS = 6
@@ -47,6 +46,7 @@ def frequency_response(
     speeds: ArrayLike,
     *,
     together: Sequence[Sequence[int]] | None = None,
+    resolution: float = _RESOLUTION,
     method: Method | None = None,
     jobs: int = -1,
     progress: bool | None = None,
@@ -63,6 +63,9 @@ def frequency_response(
     together : sequence of sequence of int, optional
         Numbers of loads whose forces are added up, such as those of all tooth pairs of a mesh: "load" then numbers
         these sums, which have no displacement. Default: each load for itself.
+    resolution : float
+        Part of its speed to which that of a peak is found, 1e-12 to 1e-2: of its height, the square of what this is of
+        its width is missing.
     method : Method, optional
         See :func:`facegear.floquet.response.steady_response`.
     jobs, progress, cache_directory
@@ -100,10 +103,11 @@ def frequency_response(
     require_model(model)
     jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
+    resolution = within("resolution", resolution, 1e-12, 1e-2)
     asked = _asked(system_at(model, float(speeds[0])), method, together)
     found = _computed([model], speeds, asked, jobs, progress, cache_directory)[0]
     _require_some(found, model, float(speeds[0]), method)
-    between = _resonances_between(model, speeds)
+    between = _resonances_between(model, speeds, resolution)
     at = np.concatenate([speeds, between])
     every = np.concatenate([found, _computed([model], between, asked, jobs, progress, cache_directory)[0]])
     dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, asked)
@@ -111,7 +115,7 @@ def frequency_response(
         "local maxima that show at the speeds, or where one of the first six harmonics of the mesh meets a natural "
         "frequency of the mean system; none at the first and last speed"
     )
-    return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], asked))
+    return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], asked, resolution))
 
 
 @one_thread()
@@ -330,7 +334,9 @@ def _dataset(
     )
 
 
-def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, asked: _Asked) -> dict[str, Any]:
+def _peaks(
+    model: Model, speeds: FloatArray, numbers: FloatArray, asked: _Asked, resolution: float
+) -> dict[str, Any]:
     """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled.
 
     From numbers of :func:`_numbers` at ascending speeds (S,), shape (S, loads, 10).
@@ -342,14 +348,15 @@ def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, asked: _Asked)
         rms, forces = numbers[:, load, 5], np.abs(numbers[:, load, 6:8])
         noise = _NOISE * float(np.nan_to_num(forces).max())
         # Next to where nothing is known nobody can tell.
-        known = np.flatnonzero(np.isfinite(rms))
-        for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+        finite = np.flatnonzero(np.isfinite(rms))
+        for run in np.split(finite, np.flatnonzero(np.diff(finite) > 1) + 1):
             for i in find_peaks(rms[run], prominence=max(noise, np.finfo(float).tiny))[0].tolist():
-                speed, value = _settled(model, asked, load, speeds[run][i - 1 : i + 2].tolist())
+                three = run[i - 1 : i + 2]
+                known = dict(zip(speeds[three].tolist(), numbers[three], strict=True))
+                speed, found = _settled(model, asked, load, known, resolution)
                 response = _response(model, speed, asked)
                 label = "" if response is None else resonance(response).label
-                low, high = _numbers(model, speed, asked)[load, 6:8].tolist()
-                peaks.append((speed, load, value, low, high, label))
+                peaks.append((speed, load, *found[load, 5:8].tolist(), label))
     peaks.sort()
     columns = [list(column) for column in zip(*peaks, strict=True)] if peaks else [[]] * 6
     places, loads, values, lowest, highest, labels = columns
@@ -382,20 +389,25 @@ def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, asked: _Asked)
     }
 
 
-def _settled(model: Model, asked: _Asked, load: int, bracket: list[float]) -> tuple[float, float]:
-    """Speed and rms of a load's force at a peak that lies between the ends of a bracket of three speeds."""
+def _settled(
+    model: Model, asked: _Asked, load: int, known: dict[float, FloatArray], resolution: float
+) -> tuple[float, FloatArray]:
+    """Speed and numbers at a peak of a load that lies between the first and the last of three known speeds."""
+    bracket = tuple(known)
+    numbers = dict(known)
 
-    @cache
     def depth(speed: float) -> float:
-        return -float(np.nan_to_num(_numbers(model, speed, asked)[load, 5]))
+        if speed not in numbers:
+            numbers[speed] = _numbers(model, speed, asked)
+        return -float(np.nan_to_num(numbers[speed][load, 5]))
 
     if depth(bracket[1]) < min(depth(bracket[0]), depth(bracket[2])):
-        best = minimize_scalar(depth, bracket=tuple(bracket), method="brent", options={"xtol": _RESOLUTION})
-        return float(best.x), -float(best.fun)
-    return bracket[1], -depth(bracket[1])
+        minimize_scalar(depth, bracket=bracket, method="brent", options={"xtol": resolution})
+    best = min(numbers, key=depth)
+    return best, numbers[best]
 
 
-def _resonances_between(model: Model, speeds: FloatArray) -> FloatArray:
+def _resonances_between(model: Model, speeds: FloatArray, resolution: float) -> FloatArray:
     """Speeds at which a natural frequency meets a harmonic of the mesh, if none of those given is near enough to tell.
 
     Near enough is the half width of the resonance, the decay of the natural motion over its frequency.
@@ -418,5 +430,5 @@ def _resonances_between(model: Model, speeds: FloatArray) -> FloatArray:
             def away(speed: float, harmonic: int = harmonic, mode: int = mode) -> float:
                 return float(detuned(speed)[0][harmonic, mode])
 
-            found.append(brentq(away, low, high, rtol=_RESOLUTION))
+            found.append(brentq(away, low, high, rtol=resolution, xtol=resolution * low))
     return np.unique(np.array(found, dtype=float))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from facegear.drives.assess import _torsion, assess
+from facegear.drives.assess import _in_torsion, assess
 from facegear.drives.assessment import Assessment, _told
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
@@ -145,7 +145,7 @@ def test_torsion_is_looked_at_in_the_tolerance_of_speed():
     wide = parse_drive(text + "\ntolerances:\n  speed_percent: 5\n")
     found = {}
     for name, file in (("as it is", stable), ("with its tolerance", wide)):
-        found[name] = _torsion(file, plain_contacts(file), 1)["Tregold, arm as printed"]
+        found[name] = tongues(*_in_torsion(file, plain_contacts(file))["Tregold, arm as printed"])
     assert found["as it is"] == ()
     assert rpm(found["with its tolerance"][-1].upper) == pytest.approx(681.8, abs=0.1)
 
@@ -236,6 +236,9 @@ def test_models_are_those_of_the_report_and_of_single_searches(tmp_path):
     )
     assert set(found.worst) == {FOLLOWER, DEAD}
     assert said[0].startswith("the drive as its file has it, in the basis of the file: unstable at ")
-    assert len(said) == 1 + 4 + 20 + 1
+    assert len(said) == 1 + 4 + 20
+    # What each shakes the disk with, of the file's own contact, or why nothing.
+    assert len(found.disk_responses) == 2 * 6
+    assert all(each.data is not None or each.reason for each in found.disk_responses)
     page = write_assessment(found, tmp_path).read_text(encoding="utf-8")
     assert "Depends on" in page or "under all" in page
