@@ -92,7 +92,8 @@ def mesh_stiffness(drive: Drive, correction_factor: float, material: Material = 
 
     Examples
     --------
-    >>> f"{mesh_stiffness(Drive(31, 107, 3.175e-3), 0.5):.3g}"
+    >>> import facegear as fg
+    >>> f"{fg.mesh_stiffness(fg.Drive(31, 107, 3.175e-3), 0.5):.3g}"
     '1.58e+08'
     """
     return checked_factor(correction_factor) * tooth_stiffness(drive, material) / 2.0
@@ -301,9 +302,10 @@ class Torsional:
 
     Examples
     --------
-    >>> from facegear.geometry.drive import Drive
-    >>> gearbox = Gearbox(Drive(31, 107, 3.175e-3), 1.6e-3, 0.15, 0.17, 1.58e8, 1.58e3, 1.42e6, 14.2, 1.58e7, 158.0)
-    >>> Torsional(gearbox).system(speed=50.0).size
+    >>> import facegear as fg
+    >>> drive = fg.Drive(31, 107, 3.175e-3)
+    >>> gearbox = fg.Gearbox(drive, 1.6e-3, 0.15, 0.17, 1.58e8, 1.58e3, 1.42e6, 14.2, 1.58e7, 158.0)
+    >>> fg.Torsional(gearbox).system(speed=50.0).size
     3
     """
 
