@@ -91,12 +91,12 @@ def frequency_response(
 
     Examples
     --------
-    >>> from facegear.floquet.models import Excited
-    >>> from facegear.floquet.piecewise import PiecewiseChebyshev
+    >>> import facegear as fg
+    >>> import numpy as np
     >>> from facegear.mechanics.classical import Mathieu
-    >>> wave = PiecewiseChebyshev.fit(lambda x, piece: np.cos(2.0 * np.pi * x), [0.0])
-    >>> model = Excited(Mathieu(depth=0.1, damping_ratio=0.1), transmission_error=wave)
-    >>> found = frequency_response(model, np.linspace(0.6, 1.5, 19), jobs=1)
+    >>> wave = fg.PiecewiseChebyshev.fit(lambda x, piece: np.cos(2.0 * np.pi * x), [0.0])
+    >>> model = fg.Excited(Mathieu(depth=0.1, damping_ratio=0.1), transmission_error=wave)
+    >>> found = fg.frequency_response(model, np.linspace(0.6, 1.5, 19), jobs=1)
     >>> found.peak_label.values.tolist()
     ['1/1']
     """

@@ -258,8 +258,8 @@ class DrivingForce:
 
     Examples
     --------
-    >>> from facegear.geometry.drive import Drive
-    >>> round(DrivingForce(power=447.42e3, pinion_speed=523.6).newtons(Drive(26, 130, 3.175e-3)))
+    >>> import facegear as fg
+    >>> round(fg.DrivingForce(power=447.42e3, pinion_speed=523.6).newtons(fg.Drive(26, 130, 3.175e-3)))
     20703
     """
 

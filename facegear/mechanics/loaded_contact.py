@@ -142,7 +142,8 @@ class LoadedContact:
 
     Examples
     --------
-    >>> contact = LoadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27), torque=100.0)
+    >>> import facegear as fg
+    >>> contact = fg.LoadedContact(fg.Drive(26, 130, 3.175e-3, shaper_teeth=27), torque=100.0)
     >>> round(contact.contact_ratio, 4)
     2.9532
     >>> contact.mesh_stiffness([0.0, 0.5]).shape

@@ -94,16 +94,13 @@ class MeshOscillator(PinionsOnDisk):
 
     Examples
     --------
-    >>> from facegear.floquet.multipliers import growth_rate
-    >>> from facegear.mechanics.plate import Body
-    >>> from facegear.mechanics.tooth_stiffness import mesh_stiffness
-    >>> from facegear.support.parameters import MeshLoad
-    >>> body, load = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0)
-    >>> teeth = mesh_stiffness(body.drive, correction_factor=0.5)
-    >>> model = MeshOscillator(body, load, mesh_stiffness=teeth, mesh_damping=1e-5)
+    >>> import facegear as fg
+    >>> body, load = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03), fg.MeshLoad(1.0, 3e-6, 1.0)
+    >>> teeth = fg.mesh_stiffness(body.drive, correction_factor=0.5)
+    >>> model = fg.MeshOscillator(body, load, mesh_stiffness=teeth, mesh_damping=1e-5)
     >>> model.system(speed=50.0).size
     15
-    >>> both = MeshOscillator(
+    >>> both = fg.MeshOscillator(
     ...     body, load, (0.0, 0.0), sides=(1, -1), clocking=0.5, mesh_stiffness=teeth, mesh_damping=1e-5
     ... )
     >>> [coordinate.name for coordinate in both.coordinates[-2:]]

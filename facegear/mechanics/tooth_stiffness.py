@@ -56,7 +56,8 @@ def mesh_stiffness(drive: Drive, correction_factor: float, material: Material = 
 
     Examples
     --------
-    >>> f"{mesh_stiffness(Drive(31, 107, 3.175e-3), 0.5):.3g}"
+    >>> import facegear as fg
+    >>> f"{fg.mesh_stiffness(fg.Drive(31, 107, 3.175e-3), 0.5):.3g}"
     '1.58e+08'
     """
     return checked_factor(correction_factor) * tooth_stiffness(drive, material) / 2.0

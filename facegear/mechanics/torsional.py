@@ -241,9 +241,10 @@ class Torsional:
 
     Examples
     --------
-    >>> from facegear.geometry.drive import Drive
-    >>> gearbox = Gearbox(Drive(31, 107, 3.175e-3), 1.6e-3, 0.15, 0.17, 1.58e8, 1.58e3, 1.42e6, 14.2, 1.58e7, 158.0)
-    >>> Torsional(gearbox).system(speed=50.0).size
+    >>> import facegear as fg
+    >>> drive = fg.Drive(31, 107, 3.175e-3)
+    >>> gearbox = fg.Gearbox(drive, 1.6e-3, 0.15, 0.17, 1.58e8, 1.58e3, 1.42e6, 14.2, 1.58e7, 158.0)
+    >>> fg.Torsional(gearbox).system(speed=50.0).size
     3
     """
 

@@ -89,14 +89,12 @@ class TwoGears:
 
     Examples
     --------
-    >>> from facegear.mechanics.plate import Body
-    >>> from facegear.mechanics.tooth_stiffness import mesh_stiffness
-    >>> from facegear.support.parameters import MeshLoad
-    >>> body, load = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0)
+    >>> import facegear as fg
+    >>> body, load = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03), fg.MeshLoad(1.0, 3e-6, 1.0)
     >>> angles = tuple(body.drive.angular_pitch * teeth for teeth in (0, 65))
-    >>> teeth = mesh_stiffness(body.drive, correction_factor=0.5)
-    >>> gear = MeshOscillator(body, load, angles, mesh_stiffness=teeth, mesh_damping=1e-5)
-    >>> TwoGears(gear, roles=("input", "idler")).system(speed=50.0).size
+    >>> teeth = fg.mesh_stiffness(body.drive, correction_factor=0.5)
+    >>> gear = fg.MeshOscillator(body, load, angles, mesh_stiffness=teeth, mesh_damping=1e-5)
+    >>> fg.TwoGears(gear, roles=("input", "idler")).system(speed=50.0).size
     30
     """
 
