@@ -18,6 +18,7 @@ import yaml
 from doit.exceptions import TaskFailed
 
 from compendium.contents import ContentsError
+from facegear.support.provenance import made_by
 from tools.imports import imported_by
 from tools.pages import bibtex, figure_index, offer_numbers, put_outputs_in_readers_digits, run_times
 from tools.progress import CELLS, BuildReporter
@@ -209,11 +210,14 @@ def stage() -> TaskFailed | None:
 
 
 def write_config() -> Path:
-    """Write the configuration of the book, with buttons to the repository where its address is known.
+    """Write the configuration of the book: what made it at the foot, buttons where the repository's address is known.
 
-    A workflow on GitHub knows it; in anybody's clone a button would lead nowhere.
+    A workflow on GitHub knows the address; in anybody's clone a button would lead nowhere.
     """
     config = yaml.safe_load((ROOT / "_config.yml").read_text(encoding="utf-8"))
+    made = made_by()
+    commit = f", commit {made['facegear_commit']}" if "facegear_commit" in made else ""
+    config["html"]["extra_footer"] = f"Made by facegear {made['facegear_version']}{commit}."
     repository = os.environ.get("GITHUB_REPOSITORY")
     if repository:
         config["repository"] = {"url": f"https://github.com/{repository}", "branch": "main"}

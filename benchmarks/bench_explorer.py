@@ -11,22 +11,24 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
-from facegear.drives import studies
 from facegear.drives.cell import cell_detail
 from facegear.drives.explore import Study, map_stages
+from facegear.drives.studies.drive import drive_study
+from facegear.drives.studies.gearbox import gearbox_study
+from facegear.drives.studies.oscillator import oscillator_study
 from facegear.floquet.models import replace_parameter
 
 CASES: tuple[tuple[str, Study, str, Mapping[str, Any]], ...] = (
-    ("one pinion, bearing stiffness", studies.drive_study(), "stiffness", {}),
-    ("one pinion, bearing damping", studies.drive_study(), "damping", {}),
-    ("one pinion, pinion mass", studies.drive_study(), "mass", {}),
-    ("other teeth", studies.drive_study(), "stiffness", {"pinion_teeth": 29, "gear_teeth": 145}),
-    ("three pinions", studies.drive_study(), "stiffness", {"pinions": "3"}),
-    ("power of 300 hp", studies.drive_study(), "stiffness", {"power": 300.0}),
-    ("thickness on the vertical axis", studies.drive_study(), "thickness_ratio", {}),
-    ("power on the vertical axis", studies.drive_study(), "power", {}),
-    ("Mathieu's equation", studies.oscillator_study(), "depth", {}),
-    ("gearbox, damping of a shaft", studies.gearbox_study(), "input_damping", {}),
+    ("one pinion, bearing stiffness", drive_study(), "stiffness", {}),
+    ("one pinion, bearing damping", drive_study(), "damping", {}),
+    ("one pinion, pinion mass", drive_study(), "mass", {}),
+    ("other teeth", drive_study(), "stiffness", {"pinion_teeth": 29, "gear_teeth": 145}),
+    ("three pinions", drive_study(), "stiffness", {"pinions": "3"}),
+    ("power of 300 hp", drive_study(), "stiffness", {"power": 300.0}),
+    ("thickness on the vertical axis", drive_study(), "thickness_ratio", {}),
+    ("power on the vertical axis", drive_study(), "power", {}),
+    ("Mathieu's equation", oscillator_study(), "depth", {}),
+    ("gearbox, damping of a shaft", gearbox_study(), "input_damping", {}),
 )
 
 

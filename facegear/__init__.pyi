@@ -17,10 +17,10 @@ from .floquet.piecewise import PiecewiseChebyshev as PiecewiseChebyshev
 from .floquet.response import steady_response as steady_response
 from .geometry.drive import Drive as Drive
 from .geometry.kinematics import ContactPath as ContactPath
-from .geometry.kinematics import SkewLine as SkewLine
+from .geometry.misalignment import Misalignment as Misalignment
 from .geometry.phases import phase_split as phase_split
-from .geometry.point_contact import Misalignment as Misalignment
 from .geometry.point_contact import UnloadedContact as UnloadedContact
+from .geometry.skew_line import SkewLine as SkewLine
 from .maps.campbell import campbell as campbell
 from .maps.campbell import mode_shapes as mode_shapes
 from .maps.response_map import frequency_response as frequency_response

@@ -37,6 +37,7 @@ def laid_out(folder: Path) -> Path:
     (folder / "data" / "contents.yaml").write_text(CONTENTS, encoding="utf-8")
     book = folder / "book"
     shutil.copytree(ROOT / "book" / "_assets", book / "_assets", ignore=shutil.ignore_patterns("vendor"))
+    shutil.copytree(ROOT / "book" / "inventories", book / "inventories")
     (book / "references.bib").write_text("", encoding="utf-8")
     (book / "intro.md").write_text("# Page\n", encoding="utf-8")
     (book / "_toc.yml").write_text(

@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from facegear.drives.drive_keys import documentation, schema  # noqa: E402
+from facegear.drives.drive_schema import documentation, schema  # noqa: E402
 
 SCHEMA = ROOT / "data" / "drive.schema.json"
 PAGE = ROOT / "book" / "drive_file.md"

@@ -3,6 +3,9 @@
 A docstring names its neighbours as the code calls them, `with_method` or `facegear.maps.stability_map.stability_map`.
 One that is public becomes a link to the page; one that exists and is not public stays code without a link; one that
 does not exist is left to Sphinx, which complains.
+
+The types of parameters and results are links too, through numpydoc: public names, and what `book/inventories` has
+of other libraries. Words such as `float` that everybody knows are not.
 """
 
 import importlib
@@ -12,8 +15,10 @@ from types import ModuleType
 from typing import Any
 
 from docutils import nodes
+from numpydoc.xref import DEFAULT_LINKS
 from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
+from sphinx.config import Config
 from sphinx.environment import BuildEnvironment
 from sphinx.util.logging import get_node_location
 
@@ -77,7 +82,16 @@ def resolve(
     return None
 
 
+def link_types(app: Sphinx, config: Config) -> None:
+    """Tell numpydoc which words of a type are links: its own are not, public names are."""
+    # All others: as a text of `_config.yml` Jupyter Book would not let it through.
+    config.numpydoc_xref_ignore = "all"
+    own = {name: f"facegear.{name}" for name in facegear.__all__}
+    config.numpydoc_xref_aliases = {word: word for word in DEFAULT_LINKS} | own | config.numpydoc_xref_aliases
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx what is here."""
     app.connect("missing-reference", resolve)
+    app.connect("config-inited", link_types, priority=100)  # before numpydoc looks at them
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -31,7 +31,8 @@ from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
 from facegear.mechanics.plate import Body
-from facegear.mechanics.spread_force import RIM_POINT, Spread, points_on
+from facegear.mechanics.pressed_points import Spread, points_on
+from facegear.mechanics.spreads import RIM_POINT
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import ascending, nonnegative, within
 from facegear.support.threads import one_thread

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from facegear.geometry.drive import DEDENDUM, Drive
+from facegear.geometry.drive import Drive
+from facegear.geometry.proportions import DEDENDUM
 from facegear.support.parameters import integer_at_least, positive, within
 
 MODULE = 25.4e-3 / 8

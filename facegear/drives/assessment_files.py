@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from facegear.drives.assess import Assessment, Outcome
+import numpy as np
+import xarray as xr
+
+from facegear.drives.assessment import SAFE, Assessment
+from facegear.drives.findings import TORSION
+from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
 from facegear.plotting import assessment as draw
 from facegear.support import labelled
 from facegear.support.files import folder_written_whole
 from facegear.support.parameters import rpm
 from facegear.support.tables import write_table
+
+# Resonances of each model that the page names.
+_PEAKS = 5
 
 PAGE = "assessment.html"
 """Name of the page among the files of an assessment."""
@@ -23,12 +31,12 @@ def sections(found: Assessment) -> tuple[Section, ...]:
 
 
 def _verdict(found: Assessment) -> Section:
-    good = found.verdict == "safe under all"
+    good = found.verdict == SAFE
     parts: list[Paragraph | Listing] = [
         Paragraph(f"{found.file.name}.", strong=True),
         Paragraph(found.headline, "good" if good else "bad", strong=True),
     ]
-    said = [*found.over_tolerances, found.dynamic_load, found.change]
+    said = [*found.over_tolerances, found.dynamic_load, *found.forced, found.change]
     parts.append(Listing(tuple(sentence for sentence in said if sentence)))
     parts.append(Paragraph(found.not_varied, "bad"))
     return Section("Verdict", tuple(parts))
@@ -91,41 +99,113 @@ def _tolerances(found: Assessment) -> Section:
     title = "Tolerances"
     if not found.worst:
         return Section(title, (Paragraph("The file has no section tolerances."),))
-    rows = tuple(
-        (
-            force,
-            f"{stiffness:g}",
-            f"{damping:g}",
-            ", ".join(f"{rpm(t.lower):.4g} to {rpm(t.upper):.4g}" for t in tongues) or "none",
-        )
-        for force, case in found.worst.items()
-        for (stiffness, damping), tongues in case.corners.items()
-    )
-    headings = ("driving force", "stiffness, times", "damping, times", "unstable [rpm]")
+    tables = tuple(_corners([name for name in found.worst if name != TORSION], found, "Corners of the range"))
+    if TORSION in found.worst:
+        tables += tuple(_corners([TORSION], found, "Corners of the range in torsion"))
     words = Paragraph(
         "Of the file's own contact and teeth. Between these corners a tongue that stands at both ends of a way has "
-        "swept all speeds between; where all are stable the largest growth is followed along stiffness."
+        "swept all speeds between; where all are stable the largest growth is followed along the edges of the range."
     )
-    return Section(
-        title, (words, Listing(found.over_tolerances), Table(headings, rows, "Corners of the range"))
+    return Section(title, (words, Listing(found.over_tolerances), *tables))
+
+
+def _corners(names: Sequence[str], found: Assessment, caption: str) -> Iterator[Table]:
+    """Give the corners of worst cases that have factors of the same."""
+    cases = {name: found.worst[name] for name in names if found.worst[name].corners}
+    if not cases:
+        return
+    rows = tuple(
+        (
+            name,
+            *(f"{factor:g}" for factor in factors),
+            ", ".join(f"{rpm(t.lower):.4g} to {rpm(t.upper):.4g}" for t in tongues) or "none",
+        )
+        for name, case in cases.items()
+        for factors, tongues in case.corners.items()
     )
+    factors = next(iter(cases.values())).factors
+    yield Table(("model", *(f"{words}, times" for words in factors), "unstable [rpm]"), rows, caption)
 
 
 def _dynamic_load(found: Assessment) -> Section:
-    title = "Dynamic load"
+    parts: list[Paragraph | Picture | Table | Listing] = [*_in_torsion(found), *_of_the_disk(found)]
+    return Section("Dynamic load", tuple(parts))
+
+
+def _in_torsion(found: Assessment) -> Iterator[Paragraph | Picture]:
     if found.response is None:
-        return Section(title, (Paragraph("It is computed in torsion, for files with a section gearbox."),))
-    picture = Picture(
+        yield Paragraph("In torsion it is computed for files with a section gearbox.")
+        return
+    yield Paragraph(f"{found.dynamic_load}")
+    yield Picture(
         draw.dynamic_load(found.response, found.static_force),
         "Forces between teeth under the torque of one pinion's power, over speed; none where the gearbox is unstable. "
         "The axis is linear near zero and logarithmic beyond.",
         "Two curves over speed that part near resonances",
     )
-    return Section(title, (Paragraph(f"{found.dynamic_load}"), picture))
+
+
+def _of_the_disk(found: Assessment) -> Iterator[Paragraph | Picture | Table | Listing]:
+    yield Paragraph(
+        "The disk is shaken by the static transmission error: what teeth give way under the constant load of the "
+        "drive, less its mean, as pairs come and go. Forces are those of all pairs of a mesh, along the normal."
+    )
+    yield Listing(found.forced)
+    computed = {
+        f"{each.variant.teeth}; {each.variant.force}": each.data
+        for each in found.disk_responses
+        if each.data is not None
+    }
+    if not computed:
+        return
+    yield Picture(
+        draw.disk_forces(computed, found.static_force),
+        f"Force of a mesh, lowest and highest over a mesh period, over the static one, with the file's own contact "
+        f"({found.disk_responses[0].variant.contact}); below zero flanks part. None where the model is unstable.",
+        "Bands over speed around one that widen at resonances",
+    )
+    rows = tuple(
+        (name, str(label), f"{float(rpm(speed)):.4g}", f"{force:.4g}")
+        for name, data in computed.items()
+        for label, speed, force in _highest_peaks(data)
+    )
+    if rows:
+        headings = ("model", "mode / harmonic of the mesh", "speed [rpm]", "rms of the force [N]")
+        yield Table(headings, rows, "Highest resonances of the force of a mesh")
+
+
+def _highest_peaks(data: xr.Dataset) -> Iterator[tuple[str, float, float]]:
+    """Label, speed [rad/s] and rms [N] of the highest peaks, the highest first."""
+    for i in np.argsort(-data["peak_force_rms"].values)[:_PEAKS].tolist():
+        yield (
+            str(data["peak_label"].values[i]),
+            float(data["peak_speed"].values[i]),
+            float(data["peak_force_rms"].values[i]),
+        )
 
 
 def _left_out(found: Assessment) -> Section:
     return Section("Left out", (Listing((*found.left_out, found.not_varied)),))
+
+
+def _response_columns(table: xr.Dataset) -> dict[str, list[object]]:
+    """List forced responses row by row: a model, a speed, a pinion; models without one are in the arrays alone."""
+    forces = {
+        name: str(table[name].attrs["units"]) for name in ("force_rms", "force_lowest", "force_highest")
+    }
+    headings = ("contact", "force", "teeth", "speed_rpm", "pinion", *(f"{n}_{u}" for n, u in forces.items()))
+    rows = [
+        (
+            *(str(table[name].values[model]) for name in ("contact", "force", "teeth")),
+            float(rpm(table["speed"].values[at])),
+            pinion + 1,
+            *(float(table[name].values[model, at, pinion]) for name in forces),
+        )
+        for model in np.flatnonzero(table["none_because"].values == "").tolist()
+        for at in range(table.sizes["speed"])
+        for pinion in range(table.sizes["pinion"])
+    ]
+    return {heading: list(column) for heading, column in zip(headings, zip(*rows, strict=True), strict=True)}
 
 
 def write_assessment(found: Assessment, folder: str | Path) -> Path:
@@ -152,6 +232,11 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
     with folder_written_whole(Path(folder)) as place:
         write_table(columns, place / "models.csv")
         labelled.save(table, place / "models.nc")
+        if (torsion := found.torsion_table) is not None:
+            labelled.save(torsion, place / "torsion_response.nc")
+        if (response := found.response_table) is not None:
+            labelled.save(response, place / "disk_response.nc")
+            write_table(_response_columns(response), place / "disk_response.csv")
         title = f"Assessment of {found.file.name}"
         (place / PAGE).write_text(page(title, sections(found)), encoding="utf-8")
     return Path(folder, PAGE)

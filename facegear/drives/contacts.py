@@ -92,6 +92,11 @@ def massless(torsional: Any) -> Any:
     return getattr(torsional, "torsional", torsional)
 
 
+def path_to_massless(torsional: Any) -> tuple[str, ...]:
+    """Return the fields that lead from a torsional model to the gearbox with massless shafts."""
+    return () if massless(torsional) is torsional else ("torsional",)
+
+
 def torsional_under(torsional: Any, contact: Contact, drive: Drive, arm: str | None = None) -> Any:
     """Return a torsional model of a drive file under another contact, and with another arm of the mesh force if given.
 
@@ -103,6 +108,6 @@ def torsional_under(torsional: Any, contact: Contact, drive: Drive, arm: str | N
     drive : Drive
     arm : {"printed", "conjugate"}, optional
     """
-    inside = () if massless(torsional) is torsional else ("torsional",)
+    inside = path_to_massless(torsional)
     moved = replace_at(torsional, (*inside, "contact"), in_torsion(contact, drive))
     return moved if arm is None else replace_at(moved, (*inside, "arm"), arm)

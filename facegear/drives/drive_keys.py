@@ -1,184 +1,25 @@
-"""Keys of a drive file: one table, from which the check, the JSON Schema and the documentation are made.
+"""All keys of a drive file, section by section: the one table that checks, JSON Schema and documentation go by.
 
 Units are those of a workshop and part of each key's name; inside the package everything is SI.
 """
 
 from __future__ import annotations
 
-import math
-import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any, Literal
-from unicodedata import lookup
 
 from facegear.drives.flexible_teeth import CENTROID, SHARING
 from facegear.drives.forces import PLACES, RIM
-from facegear.geometry.drive import FEWEST_TEETH
+from facegear.drives.keys import PER_SI, Key, Section
+from facegear.geometry.proportions import FEWEST_TEETH
 from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
 from facegear.mechanics.two_gears import DRIVES
-from facegear.support.parameters import STEEL, WATT_PER_HORSEPOWER
-
-Kind = Literal["integer", "number", "text", "choice", "numbers", "choices"]
+from facegear.support.parameters import STEEL
 
 # Tongues crowd towards standstill: their number, and the time to find them, goes with highest over lowest speed.
 WIDEST_SPEED_RATIO = 50.0
-LONGEST_TEXT = 80
 # What a choice is that the drive itself decides.
 USUAL = "usual"
-MOST_PINIONS = 12
-# Value in SI is value in the file divided by this.
-PER_SI: Mapping[str, float] = MappingProxyType(
-    {
-        "mm": 1e3,
-        "µm": 1e6,
-        "°": 180 / math.pi,
-        "µs": 1e6,
-        "rpm": 30 / math.pi,
-        "kW": 1e-3,
-        "hp": 1 / WATT_PER_HORSEPOWER,
-        "GPa": 1e-9,
-        "MPa": 1e-6,
-        "%": 100.0,
-    }
-)
-# Value in SI is this divided by the value in the file.
-OVER_SI: Mapping[str, float] = MappingProxyType({"1/in": 25.4e-3})
-_UNIT_IN_NAME = re.compile(
-    r"_(mm|um|deg|us|rpm|kW|hp|GPa|MPa|per_inch|kg_per_m3|kg_m2|N_per_m|Nm_per_rad|percent)$"
-)
-
-
-def plain(meaning: str) -> str:
-    r"""Give documentation without its marks, Greek letters as such.
-
-    Examples
-    --------
-    >>> plain(r"$\mu$, as `gearbox` has it")
-    'μ, as gearbox has it'
-    """
-    return re.sub(
-        r"\\([a-z]+)",
-        lambda found: lookup(f"GREEK SMALL LETTER {found[1].upper()}"),
-        re.sub(r"[$`]", "", meaning),
-    )
-
-
-@dataclass(frozen=True)
-class Key:
-    """One key of a drive file.
-
-    Attributes
-    ----------
-    name : str
-        Name in the file, with its unit.
-    meaning : str
-        What it is, for the documentation.
-    kind : {"number", "integer", "text", "choice", "numbers", "choices"}
-        "numbers" is a list of any numbers, "choices" one of certain words or numbers.
-    unit : str
-        Unit of the value in the file.
-    lowest, highest : float
-        Ends of the valid interval, both allowed.
-    or_zero : bool
-        Whether 0 is valid although it lies outside the interval.
-    default : object
-        Value if the key is left out; None for a key that must be there.
-    choices : tuple of str or int
-        Valid words of a "choice"; valid entries of "choices".
-    quantity : str
-        Name of the package's own parameter, where it is not that of the key without its unit. Keys of a section with
-        the same quantity say the same in different units: a file has exactly one of them.
-    no_unit : str
-        What a ratio without a unit is mistaken for.
-    hint : str
-        What is said of a value outside the interval, in place of a guess at its unit.
-    """
-
-    name: str
-    meaning: str
-    kind: Kind = "number"
-    unit: str = ""
-    lowest: float = -math.inf
-    highest: float = math.inf
-    or_zero: bool = False
-    default: Any = None
-    choices: tuple[str | int, ...] = ()
-    quantity: str = ""
-    no_unit: str = ""
-    hint: str = ""
-
-    @property
-    def si_name(self) -> str:
-        """Name of the package's own parameter."""
-        return self.quantity or _UNIT_IN_NAME.sub("", self.name)
-
-    def to_si(self, value: float) -> float:
-        """Value in SI of a value in the file."""
-        return OVER_SI[self.unit] / value if self.unit in OVER_SI else value / PER_SI.get(self.unit, 1.0)
-
-    def from_si(self, value: float) -> float:
-        """Value in the file of a value in SI."""
-        return OVER_SI[self.unit] / value if self.unit in OVER_SI else value * PER_SI.get(self.unit, 1.0)
-
-    @property
-    def plain_meaning(self) -> str:
-        """Meaning without marks, Greek letters as such."""
-        return plain(self.meaning)
-
-    @property
-    def fewest(self) -> int:
-        """How many entries a list has at least."""
-        return 0 if self.default == () else 1
-
-    @property
-    def valid(self) -> str:
-        """What is valid, in words."""
-        many = f"a list of {self.fewest} to {MOST_PINIONS}"
-        if self.kind == "choices":
-            what = "words" if isinstance(self.choices[0], str) else "numbers"
-            return f"{many} {what}, each {self.valid_entry}"
-        if self.kind == "numbers":
-            return f"{many} numbers, each {self.valid_entry.removeprefix('a number ')}"
-        return self.valid_entry
-
-    @property
-    def valid_entry(self) -> str:
-        """What is valid for one entry of a list, or for a key without a list."""
-        if self.choices:
-            return " or ".join(map(str, self.choices))
-        if self.kind == "text":
-            return f"text of 1 to {LONGEST_TEXT} characters"
-        interval = f"{self.lowest:g} to {self.highest:g}{f' {self.unit}' if self.unit else ''}"
-        what = "a whole number" if self.kind == "integer" else "a number"
-        return f"{'0, or ' if self.or_zero else ''}{what} from {interval}"
-
-
-@dataclass(frozen=True)
-class Section:
-    """A group of keys.
-
-    Attributes
-    ----------
-    meaning : str
-        What it describes.
-    keys : tuple of Key
-    required : bool
-        Whether a file must have it.
-    assumed : bool
-        Whether a file without it is taken to have it, with the values that keys have if they are left out.
-    """
-
-    meaning: str
-    keys: tuple[Key, ...]
-    required: bool = True
-    assumed: bool = False
-
-    def quantities(self) -> Iterator[tuple[Key, ...]]:
-        """Keys that say the same in different units, together; most stand alone."""
-        for name in dict.fromkeys(key.si_name for key in self.keys):
-            yield tuple(key for key in self.keys if key.si_name == name)
 
 
 def _count(
@@ -486,10 +327,16 @@ def _tolerance(name: str, meaning: str) -> Key:
 _TOLERANCES = Section(
     "How far the drive may be from what the file says, to either side, for `facegear assess`.",
     (
-        _tolerance("stiffness_percent", "of stiffness: bearings and flexible teeth together"),
         _tolerance(
-            "damping_percent", "of damping: bearings, flexible teeth and the body's material together"
+            "stiffness_percent",
+            "of stiffness: bearings and flexible teeth together; in torsion, the teeth of `gearbox`",
         ),
+        _tolerance(
+            "damping_percent",
+            "of damping: bearings, flexible teeth and the body's material together; in torsion, the teeth of `gearbox`",
+        ),
+        _tolerance("shaft_stiffness_percent", "of the stiffness of the shafts of `gearbox`, both together"),
+        _tolerance("shaft_damping_percent", "of the damping of the shafts of `gearbox`, both together"),
         _tolerance("speed_percent", "of speed: below the lowest and above the highest operating speed"),
     ),
     required=False,
@@ -510,96 +357,3 @@ SECTIONS: Mapping[str, Section] = MappingProxyType(
     }
 )
 """Keys of a drive file, section by section."""
-
-
-def schema() -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of a drive file, for editors and validators.
-
-    It says what can be said key by key. Whether teeth, bore and speeds fit one another only
-    :func:`facegear.drives.drive_file.parse_drive` can tell.
-    """
-    sections = {name: _section_schema(section) for name, section in SECTIONS.items()}
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "Drive file of facegear",
-        **_object(
-            {NAME.name: _key_schema(NAME), **sections},
-            [NAME.name, *(name for name, section in SECTIONS.items() if section.required)],
-        ),
-    }
-
-
-def _object(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
-    return {
-        "type": "object",
-        "additionalProperties": False,
-        "required": required,
-        "properties": properties,
-    }
-
-
-def _section_schema(section: Section) -> dict[str, Any]:
-    properties = {key.name: _key_schema(key) for key in section.keys}
-    required = [key.name for key, *others in section.quantities() if key.default is None and not others]
-    exactly_one = [
-        {"oneOf": [{"required": [key.name]} for key in keys]}
-        for keys in section.quantities()
-        if len(keys) > 1
-    ]
-    choices = {"allOf": exactly_one} if exactly_one else {}
-    return {"description": section.meaning, **_object(properties, required), **choices}
-
-
-def _key_schema(key: Key) -> dict[str, Any]:
-    unit = f" [{key.unit}]" if key.unit else ""
-    told: dict[str, Any] = {"description": f"{key.meaning.replace('$', '')}{unit}"}
-    if key.default is not None:
-        told["default"] = list(key.default) if isinstance(key.default, tuple) else key.default
-    if key.kind == "text":
-        return told | {"type": "string", "maxLength": LONGEST_TEXT, "pattern": r"\S"}
-    if key.kind == "choice":
-        return told | {"enum": list(key.choices)}
-    if key.kind == "choices":
-        each = {"enum": list(key.choices)}
-        return told | {"type": "array", "minItems": key.fewest, "maxItems": MOST_PINIONS, "items": each}
-    ends = {"minimum": key.lowest, "maximum": key.highest}
-    if key.kind == "numbers":
-        return told | {
-            "type": "array",
-            "minItems": key.fewest,
-            "maxItems": MOST_PINIONS,
-            "items": {"type": "number", **ends},
-        }
-    if key.or_zero:
-        return told | {"type": key.kind, "anyOf": [{"const": 0}, ends]}
-    return told | {"type": key.kind, **ends}
-
-
-def documentation() -> str:
-    """Tables of all keys, in Markdown."""
-    head = "| key | meaning | unit | valid | if left out |\n| --- | --- | --- | --- | --- |"
-    parts = [f"{head}\n{_row(NAME, [])}"]
-    for name, section in SECTIONS.items():
-        optional = "" if section.required else " (may be left out)"
-        rows = "\n".join(
-            _row(key, [f"`{other.name}`" for other in keys if other is not key])
-            for keys in section.quantities()
-            for key in keys
-        )
-        parts.append(f"### `{name}`{optional}\n\n{section.meaning}\n\n{head}\n{rows}")
-    return "\n\n".join(parts)
-
-
-def _row(key: Key, others: list[str]) -> str:
-    default = "required" if key.default is None else _shown_default(key.default)
-    if others:
-        default = f"this or {' or '.join(others)}"
-    valid = key.valid.replace(f" {key.unit}", "") if key.unit else key.valid
-    unit = "" if key.kind in ("text", "choices") else key.unit or "1"
-    return f"| `{key.name}` | {key.meaning} | {unit} | {valid} | {default} |"
-
-
-def _shown_default(value: Any) -> str:
-    if isinstance(value, tuple):
-        return f"[{', '.join(f'{entry:g}' for entry in value)}]"
-    return value if isinstance(value, str) else f"{value:g}"

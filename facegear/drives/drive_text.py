@@ -12,7 +12,8 @@ from typing import Any
 import yaml
 
 from facegear.drives.drive_file import DriveFile, DriveFileError, parse_drive
-from facegear.drives.drive_keys import NAME, SECTIONS, Key, Section, plain
+from facegear.drives.drive_keys import NAME, SECTIONS
+from facegear.drives.keys import Key, Section, plain
 from facegear.support.files import written_whole
 
 _WIDTH = 110

@@ -30,8 +30,9 @@ READING_COLUMNS, READING_ROWS = 60, 40
 
 # Speeds begin here, as a part of the highest one: below, tongues are narrower than a column.
 _LOWEST = 1 / 20
-# Cells of the first stage lie this many columns and rows apart, and slow maps are filled so many columns at a time.
-_COLUMN_STEP, _ROW_STEP, _SLOW_COLUMNS = 3, 5, 3
+# Cells of the first stage lie this many columns and rows apart, and slow maps are filled so many rows at a time: a row
+# takes little longer than a few cells of it.
+_COLUMN_STEP, _ROW_STEP, _SLOW_ROWS = 3, 5, 8
 
 
 @dataclass(frozen=True)
@@ -271,7 +272,7 @@ def map_stages(
     ------
     xarray.DataArray, shape (V, S)
         Growth rates [1/s], with the period [s] of each speed as a coordinate. In the first, cells that are not yet
-        computed have the value of a neighbour; attribute ``computed`` counts the columns that are final.
+        computed have the value of a neighbour; attribute ``computed`` is the part of the cells that are final.
     """
     columns = np.arange(min(_COLUMN_STEP // 2, speeds.size - 1), speeds.size, _COLUMN_STEP)
     fast = _only_loads_change(model, float(speeds[-1]), parameter, values)
@@ -280,26 +281,27 @@ def map_stages(
     coarse = _chart(model, speeds[columns], parameter, values[rows])
     growth = coarse.values[_nearest(values.size, rows)][:, _nearest(speeds.size, columns)]
     periods = _periods(model, speeds)
-    final = np.zeros(speeds.size, dtype=bool)
-    final[columns] = fast
 
-    def stage() -> xr.DataArray:
-        return _labelled(coarse.dims[0], values, speeds, growth.copy(), periods, int(final.sum()))
+    def stage(computed: float) -> xr.DataArray:
+        return _labelled(coarse.dims[0], values, speeds, growth.copy(), periods, computed)
 
-    yield stage()
-    missing = np.flatnonzero(~final)
-    size = missing.size if fast else _SLOW_COLUMNS
-    for start in range(0, missing.size, size):
-        part = missing[start : start + size]
-        growth[:, part] = _chart(model, speeds[part], parameter, values).values
-        final[part] = True
-        yield stage()
+    yield stage(columns.size / speeds.size if fast else 0.0)
+    if fast:
+        missing = np.setdiff1d(np.arange(speeds.size), columns)
+        if missing.size:
+            growth[:, missing] = _chart(model, speeds[missing], parameter, values).values
+            yield stage(1.0)
+        return
+    for start in range(0, values.size, _SLOW_ROWS):
+        part = slice(start, min(start + _SLOW_ROWS, values.size))
+        growth[part] = _chart(model, speeds, parameter, values[part]).values
+        yield stage(part.stop / values.size)
 
 
 def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
     """Return the last stage of :func:`map_stages` without those before it."""
     chart = _chart(model, speeds, parameter, values)
-    return _labelled(chart.dims[0], values, speeds, chart.values, _periods(model, speeds), speeds.size)
+    return _labelled(chart.dims[0], values, speeds, chart.values, _periods(model, speeds), 1.0)
 
 
 def _periods(model: Model, speeds: FloatArray) -> FloatArray:
@@ -312,7 +314,7 @@ def _labelled(
     speeds: FloatArray,
     growth: FloatArray,
     periods: FloatArray,
-    computed: int,
+    computed: float,
 ) -> xr.DataArray:
     return xr.DataArray(
         growth,

@@ -249,8 +249,7 @@ class MapExplorer:
         with self.figure.batch_update():
             self.figure.layout.yaxis.title.text = self._quantity.label
             self.figure.data[0].update(_heat(chart, self._quantity, self.study.speed))
-        done = chart.attrs["computed"] / chart.sizes["speed"]
-        self.status.value = _small(f"refining, {done:.0%} of the columns are final")
+        self.status.value = _small(f"refining, {chart.attrs['computed']:.0%} of the cells are final")
 
     def _show_cell(self) -> None:
         """Mark the chosen cell and show what happens in it."""

@@ -14,11 +14,11 @@ import numpy as np
 import xarray as xr
 
 from facegear.design import changes
-from facegear.drives import report, verdict
+from facegear.drives import critical_thickness, report_arrays, report_rows, verdict
 from facegear.drives.damage import signs_of_damage
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.play import motions_in_tongues
-from facegear.drives.report import Row
+from facegear.drives.report_rows import Row
 from facegear.floquet.models import Model, value_of
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.mode_shapes import plate_modes
@@ -83,7 +83,7 @@ class Findings:
     @property
     def provenance(self) -> str:
         """Parameters as text, for arrays."""
-        return report.describe(self.file)
+        return report_arrays.describe(self.file)
 
     @cached_property
     def cases(self) -> tuple[verdict.Case, ...]:
@@ -122,24 +122,28 @@ class Findings:
     @cached_property
     def tongue_tables(self) -> dict[str, xr.Dataset]:
         """Tongues of each model as arrays."""
-        return {name: report.tongue_table(part, self.provenance) for name, part in self.tongues.items()}
+        return {
+            name: report_arrays.tongue_table(part, self.provenance) for name, part in self.tongues.items()
+        }
 
     @cached_property
     def windows(self) -> dict[str, xr.Dataset]:
         """Stable intervals of speed of each model."""
-        return {name: report.safe_windows(part, self.speeds) for name, part in self.tongue_tables.items()}
+        return {
+            name: report_arrays.safe_windows(part, self.speeds) for name, part in self.tongue_tables.items()
+        }
 
     @cached_property
     def bases(self) -> xr.Dataset:
         """How the unstable speeds moved from basis to basis."""
-        return report.basis_table(self.cases, self.provenance)
+        return report_arrays.basis_table(self.cases, self.provenance)
 
     @cached_property
-    def thicknesses(self) -> tuple[tuple[verdict.Case, report.ThicknessVerdict], ...]:
+    def thicknesses(self) -> tuple[tuple[verdict.Case, critical_thickness.ThicknessVerdict], ...]:
         """Critical thickness for the contact that the file asks for, under both directions of the force."""
         chosen = self.cases[:2]
         models = [case.found.model for case in chosen]
-        found = report.thickness_verdicts(models, self.speeds, jobs=self.jobs)
+        found = critical_thickness.thickness_verdicts(models, self.speeds, jobs=self.jobs)
         return tuple(zip(chosen, found, strict=True))
 
     @cached_property
@@ -161,7 +165,7 @@ class Findings:
     @cached_property
     def powers(self) -> tuple[Row, ...]:
         """Critical power of the disk alone against that of the drive."""
-        return report.flutter(self.cases[0].found.model, self.file.requirements)
+        return report_rows.flutter(self.cases[0].found.model, self.file.requirements)
 
     @cached_property
     def modes(self) -> xr.Dataset:
@@ -173,7 +177,7 @@ class Findings:
         """Mesh frequency against natural frequencies of the first case."""
         first, (low, high) = self.cases[0].found, self.range_rpm
         charted = np.linspace(low, high, _CHARTED)
-        return report.combinations(first.model, first.tongues, charted, self.provenance)
+        return report_arrays.combinations(first.model, first.tongues, charted, self.provenance)
 
     @cached_property
     def map_follower(self) -> xr.Dataset:
@@ -201,7 +205,9 @@ class Findings:
 
     def _map(self, model: Model, parameter: str, highest: float) -> xr.Dataset:
         values = highest * np.arange(1, self.cells + 1) / self.cells
-        return report.growth_map(model, parameter, values, self.speeds_rpm, self.provenance, jobs=self.jobs)
+        return report_arrays.growth_map(
+            model, parameter, values, self.speeds_rpm, self.provenance, jobs=self.jobs
+        )
 
     @cached_property
     def play(self) -> xr.Dataset | None:

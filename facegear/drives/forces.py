@@ -6,15 +6,9 @@ from dataclasses import replace
 
 from facegear.geometry.drive import Drive
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.pressed_points import Spread
 from facegear.mechanics.sharing import shared_load
-from facegear.mechanics.spread_force import (
-    RIM_POINT,
-    ContactPoints,
-    PitchPoint,
-    Spread,
-    ToothPatches,
-    ToothRoot,
-)
+from facegear.mechanics.spreads import RIM_POINT, ContactPoints, PitchPoint, ToothPatches, ToothRoot
 
 RIM = "rim"
 _PAIRS = "pairs"
@@ -43,7 +37,7 @@ def pressed(place: str, contact: Contact, drive: Drive) -> Spread:
 
     Returns
     -------
-    facegear.mechanics.spread_force.Spread
+    facegear.mechanics.pressed_points.Spread
 
     Examples
     --------

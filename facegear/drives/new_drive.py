@@ -6,9 +6,11 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from facegear.drives.drive_file import DriveFileError, checked_value, parse_drive
-from facegear.drives.drive_keys import SECTIONS, Key
+from facegear.drives.drive_file import DriveFileError, parse_drive
+from facegear.drives.drive_keys import SECTIONS
 from facegear.drives.drive_text import drive_text
+from facegear.drives.file_values import checked_value
+from facegear.drives.keys import Key
 from facegear.support.plain_yaml import PlainYamlError, read_plain_yaml
 
 Content = dict[str, Any]

@@ -9,7 +9,7 @@ from typing import Any
 
 import xarray as xr
 
-from facegear.drives import export, report
+from facegear.drives import export, report_columns, report_rows
 from facegear.drives.findings import TORSION, Findings
 from facegear.drives.page import Listing, Paragraph, Section, attempted, page
 from facegear.drives.sections import SECTIONS
@@ -50,12 +50,12 @@ def parts_of(found: Findings) -> dict[str, Callable[[Path], object]]:
     """
     file = found.file
     tables: dict[str, Callable[[], Mapping[str, Any]]] = {
-        "summary": lambda: report.summary_columns(summary(found)),
-        "natural_frequencies": lambda: report.frequency_columns(found.modes),
-        "tongues": lambda: report.tongue_columns(found.tongue_tables),
-        "safe_windows": lambda: report.window_columns(found.windows),
-        "bases": lambda: report.basis_columns(found.bases),
-        "changes": lambda: report.change_columns(found.effects),
+        "summary": lambda: report_columns.summary_columns(summary(found)),
+        "natural_frequencies": lambda: report_columns.frequency_columns(found.modes),
+        "tongues": lambda: report_columns.tongue_columns(found.tongue_tables),
+        "safe_windows": lambda: report_columns.window_columns(found.windows),
+        "bases": lambda: report_columns.basis_columns(found.bases),
+        "changes": lambda: report_columns.change_columns(found.effects),
     }
     arrays: dict[str, Callable[[], xr.Dataset | None]] = {
         "bases": lambda: found.bases,
@@ -100,14 +100,14 @@ def _write_arrays(made: Callable[[], xr.Dataset | None], path: Path) -> Path:
     return labelled.save(arrays, path)
 
 
-def summary(found: Findings) -> tuple[report.Row, ...]:
+def summary(found: Findings) -> tuple[report_rows.Row, ...]:
     """All single numbers of a report; those that could not be computed are left out."""
-    rows: list[report.Row] = []
-    parts: tuple[Callable[[], tuple[report.Row, ...]], ...] = (
-        lambda: report.geometry(found.file),
+    rows: list[report_rows.Row] = []
+    parts: tuple[Callable[[], tuple[report_rows.Row, ...]], ...] = (
+        lambda: report_rows.geometry(found.file),
         lambda: found.torsional_rows,
         lambda: found.thickness_rows,
-        lambda: report.strength(found.file),
+        lambda: report_rows.strength(found.file),
         lambda: found.powers,
     )
     for part in parts:

@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from facegear.drives import findings, report
+from facegear.drives import findings, report_columns, report_rows
 from facegear.drives.findings import INPUT_STIFFNESS, TORSION, Findings
 from facegear.drives.page import Listing, Paragraph, Part, Picture, Section, Table
-from facegear.drives.report import Row
+from facegear.drives.report_rows import Row
 from facegear.drives.verdict import verdict as verdict_of
 from facegear.floquet.models import value_of
 from facegear.plotting import report as draw
@@ -92,7 +92,7 @@ def the_drive(found: Findings) -> Section:
         f"{angles} with μ = {load.stiffness:g}, ζ = {1e6 * load.damping:g} µs, τ = {load.mass:g}, on {teeth}. "
         f"Operating speeds of the face gear {low:g} to {high:g} rpm."
     )
-    table = number_table(report.geometry(file), "Dimensions, contact ratios, masses and stiffnesses")
+    table = number_table(report_rows.geometry(file), "Dimensions, contact ratios, masses and stiffnesses")
     return Section("The drive", (Paragraph(words), table))
 
 
@@ -139,7 +139,7 @@ def bases(found: Findings) -> Section:
         f"speeds, and agree on whether there is a tongue at all; at most {found.most_steps} are tried."
     )
     rows = []
-    for name, *row in zip(*report.basis_columns(found.bases).values(), strict=True):
+    for name, *row in zip(*report_columns.basis_columns(found.bases).values(), strict=True):
         circles, diameters, share, moved = row
         told = f"{100 * moved:.2f}" if np.isfinite(moved) else ""
         rows.append((name, str(circles), str(diameters), f"{100 * share:.2f}", told))
@@ -309,7 +309,7 @@ def strength(found: Findings) -> Section:
         "The critical power is that of the disk alone under the driving forces of all pinions (chapter 6 of "
         "the book). Pinions hold the disk and change it."
     )
-    rows = (*report.strength(found.file), *found.powers)
+    rows = (*report_rows.strength(found.file), *found.powers)
     return Section("Strength and power", (number_table(rows, "Stress at the root and critical power"), words))
 
 

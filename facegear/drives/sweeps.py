@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from facegear.drives import report
+from facegear.drives import report_arrays
 from facegear.drives.contacts import NAMES, torsional_under
 from facegear.drives.drive_file import DriveFile
-from facegear.drives.drive_keys import OVER_SI, SECTIONS, Key
+from facegear.drives.drive_keys import SECTIONS
+from facegear.drives.keys import OVER_SI, Key
 from facegear.drives.verdict import driven
 from facegear.floquet.models import Model, value_of
 from facegear.mechanics.edge_stiffness import Following
@@ -36,7 +37,7 @@ class Sweep:
     own : float
         Its value in the drive file, in the file's unit.
     chart : xarray.Dataset
-        From :func:`facegear.drives.report.growth_map`, in SI.
+        From :func:`facegear.drives.report_arrays.growth_map`, in SI.
     """
 
     key: Key
@@ -176,8 +177,10 @@ def sweep(
     if not 0.0 < finite("speeds", slow) < finite("speeds", fast):
         raise ValueError(f"speeds must be greater than 0 and ascend, got {slow:g} to {fast:g}")
     values = [chosen.to_si(value) for value in np.linspace(low, high, cells).tolist()]
-    provenance = f"{report.describe(file)}, contact = {contact or 'as in the file'}, following = {following}"
-    chart = report.growth_map(
+    provenance = (
+        f"{report_arrays.describe(file)}, contact = {contact or 'as in the file'}, following = {following}"
+    )
+    chart = report_arrays.growth_map(
         model, chosen.si_name, values, np.linspace(slow, fast, cells), provenance, jobs=jobs
     )
     return Sweep(chosen, own, chart)
@@ -199,7 +202,7 @@ def _write_picture(found: Sweep, path: Path) -> object:
     from facegear.support.files import written_whole
 
     unit = f" [{found.key.unit}]" if found.key.unit else ""
-    none = report.tongue_table((), "")
+    none = report_arrays.tongue_table((), "")
     scale = found.key.from_si(1.0)
     figure = growth_map(found.chart, none, found.key.to_si(found.own), f"{found.key.name}{unit}", scale)
     with written_whole(path) as place:

@@ -83,33 +83,38 @@ class SteadyResponse:
 
     def contact_displacements(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Displacement u = φᵀq − e of each load at fractions of the period, shape (..., p)."""
-        displacements: FloatArray = self._contact(fraction, side)[0]
+        displacements: FloatArray = self._contact(fraction, side, 0)[0]
         return displacements
 
     def contact_forces(self, fraction: ArrayLike, side: Side = "right") -> FloatArray:
         """Force w (k u + c u̇ + m ü) of each load at fractions of the period, shape (..., p)."""
-        u = self._contact(fraction, side)
+        # Accelerations, which take longest, are felt by masses alone.
+        order = 2 if any(load.mass for load in self.system.loads) else 1
+        u = self._contact(fraction, side, order)
         forces: FloatArray = np.zeros(u.shape[1:])
         for number, load in enumerate(self.system.loads):
-            parameters = np.array([load.stiffness, load.damping, load.mass])
+            parameters = np.array([load.stiffness, load.damping, load.mass])[: order + 1]
             forces[..., number] = np.tensordot(parameters, u[..., number], axes=1)
             if load.weight is not None:
                 forces[..., number] *= load.weight(fraction, side)[..., 0]
         return forces
 
-    def _contact(self, fraction: ArrayLike, side: Side) -> FloatArray:
-        """u, u̇, ü of each load, shape (3, ..., p)."""
+    def _contact(self, fraction: ArrayLike, side: Side, order: int) -> FloatArray:
+        """U of each load and its derivatives to an order of at most 2, shape (order + 1, ..., p)."""
         x, period = finite_array("fraction", fraction), self.system.period
-        q, v, a = (part(x, side) for part in (self.displacements, self.velocities, self.accelerations))
-        found = -known_errors(self.system, x, side)
+        motion = (self.displacements, self.velocities, self.accelerations)
+        parts = [part(x, side) for part in motion[: order + 1]]
+        found = -known_errors(self.system, x, side)[: order + 1]
         for number, load in enumerate(self.system.loads):
             phi = load.shape(x, side)
-            for order, part in enumerate((q, v, a)):
-                found[order, ..., number] += (phi * part).sum(axis=-1)
-            if load.rate == "total":
-                rate, bend = load.slope(x, side) / period, load.curvature(x, side) / period**2
-                found[1, ..., number] += (rate * q).sum(axis=-1)
-                found[2, ..., number] += (2.0 * rate * v + bend * q).sum(axis=-1)
+            for which, part in enumerate(parts):
+                found[which, ..., number] += (phi * part).sum(axis=-1)
+            if load.rate == "total" and order > 0:
+                rate = load.slope(x, side) / period
+                found[1, ..., number] += (rate * parts[0]).sum(axis=-1)
+            if load.rate == "total" and order > 1:
+                bend = load.curvature(x, side) / period**2
+                found[2, ..., number] += (2.0 * rate * parts[1] + bend * parts[0]).sum(axis=-1)
         return found
 
     def mean(self, function: Callable[[FloatArray], FloatArray]) -> FloatArray:
@@ -275,8 +280,8 @@ def _on_panels(
     whole, moved = np.eye(size), np.zeros(size)
     into = _jumps(system, panels.edges[:-1])
     for jump, step, offset in zip(into, panels.steps, panels.offsets, strict=True):
-        moved = step @ (jump @ moved) + offset
-        whole = step @ (jump @ whole)
+        moved = step @ _jumped(jump, moved) + offset
+        whole = step @ _jumped(jump, whole)
     scaled = family.scale @ whole @ family.inverse_scale
     if not np.isfinite(scaled).all():
         raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
@@ -298,7 +303,7 @@ def _on_panels(
     state = family.inverse_scale @ np.linalg.solve(away, family.scale @ moved)
     starts = []
     for jump, step, offset in zip(into, panels.steps, panels.offsets, strict=True):
-        starts.append(jump @ state)
+        starts.append(_jumped(jump, state))
         state = step @ starts[-1] + offset
     inside = panels.inside(np.array(starts))
     coefficients = _to_series(panels) @ inside
@@ -335,9 +340,14 @@ def _roughly_known(system: PeriodicSystem, panels: MotionPanels) -> NDArray[np.b
     return rough
 
 
-def _jumps(system: PeriodicSystem, starts: FloatArray) -> list[FloatArray]:
-    """Jumps of the state at the starts of panels, unit matrices where there are none."""
-    matrices = [np.eye(2 * system.size)] * starts.size
+def _jumped(jump: FloatArray | None, state: FloatArray) -> FloatArray:
+    """States after a jump, if there is one."""
+    return state if jump is None else jump @ state
+
+
+def _jumps(system: PeriodicSystem, starts: FloatArray) -> list[FloatArray | None]:
+    """Jumps of the state at the starts of panels, None where there are none."""
+    matrices: list[FloatArray | None] = [None] * starts.size
     for at, jump in system.state_jumps():
         matrices[int(np.abs(starts - at).argmin())] = jump
     return matrices

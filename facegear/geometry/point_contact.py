@@ -1,14 +1,9 @@
 """Contact at a point: a face gear cut by a shaper with more teeth than the pinion, as long as nothing is loaded.
 
-A point of the face gear's flank is named by the local pressure angle q = φ + θ0s + θs where the shaper made it and by
-its roll angle θs. At constant q the point being made moves along its own normal N = −(cos q, sin q, 0), which stands
-still (:mod:`facegear.symbolic.point_contact` derives it). So whether a normal of the flank touches the pinion's base
-circle, which is all that contact with an involute asks for, does not depend on θs: for any position of two rigid gears
-it is one equation A(q) = 0. Its root holds all through the mesh; the path of contact is a straight line of action, and
-the gears turn in their exact ratio.
-
-Coordinates are those of the shaper at rest in space: z along its axis outwards, the face gear's axis along
-k = (0, sin γ_m, cos γ_m), γ_m = 180° − γ.
+A normal of the flank that touches the pinion's base circle is a line of action, whatever the roll angle
+(:mod:`facegear.geometry.action_lines`): the root of A(q) = 0 holds all through the mesh; the path of contact is a
+straight line, and the gears turn in their exact ratio. Where it lies on the flank, how long, how the flanks part beside
+it and what errors of alignment do to it is here.
 """
 
 from __future__ import annotations
@@ -16,127 +11,25 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
-from scipy.special import elliprd, elliprf
 
-from facegear.geometry.contact_lines import ContactRegion, root
-from facegear.geometry.drive import Drive, involute
-from facegear.geometry.kinematics import PairStates, TimedPairs
-from facegear.support.parameters import finite, finite_array, keep, nonnegative, one_of, positive, within
+from facegear.geometry.action_lines import ActionLines
+from facegear.geometry.contact_lines import ContactRegion
+from facegear.geometry.drive import Drive
+from facegear.geometry.hertz import Ellipse, contact_ellipse
+from facegear.geometry.misalignment import ALIGNED, LONGEST, WIDEST, Misalignment
+from facegear.geometry.proportions import involute
+from facegear.support.parameters import finite_array, keep, nonnegative, one_of, within
 from facegear.support.types import FloatArray
 
-# Local pressure angles between which contact is looked for [rad].
-_ANGLES = np.linspace(-1.5, 1.5, 601)
-_ANGLES.setflags(write=False)
 # Halvings of a misalignment that leaves no contact, to say how much of it would, and digits of that.
 _HALVINGS, _DIGITS = 20, 3
-# Errors of alignment that are taken for such: [m], [rad], and how far off a pivot may be [m].
-_LONGEST, _WIDEST, _FARTHEST = 0.1, 0.1, 100.0
 # What a coordinate along the face may miss its ends by, relative.
 _ROUNDING = 1e-9
-# Forces [N] and moduli [Pa] for which Hertz' ellipse is computed: below and above it is no size that a number can have.
-_LEAST_FORCE, _LARGEST_MODULUS = 1e-12, 1e15
-
-
-# Components x, y, z, numbers or arrays of one shape: stacked, they would take longer to stack than to work with.
-Vector = tuple[Any, Any, Any]
-
-
-class _Change(NamedTuple):
-    """Angles between which normals begin or cease to touch the pinion's base circle."""
-
-    first: float
-    last: float
-    rises: bool
-
-
-@dataclass(frozen=True)
-class Misalignment:
-    """Position of a rigid pinion and face gear against their nominal one.
-
-    Parameters
-    ----------
-    offset : float
-        ΔE, displacement of the pinion's axis square to both axes [m], towards +x; for the other flank it counts the
-        other way.
-    gear_axial : float
-        Δq, displacement of the face gear along its axis [m], positive towards the pinion.
-    pinion_axial : float
-        Δb, displacement of the pinion along its axis [m]; an involute cylinder does not mind.
-    shaft_angle : float
-        Δγ by which the shafts stand further apart [rad]: positive opens the outer end of the teeth.
-    pivot : float, optional
-        z_v on the pinion's axis [m], about which Δγ turns it; None where the axes meet.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a value is not a finite number, a length more than 0.1 m (`pivot`: 100 m), or the angle more than 0.1 rad.
-
-    Examples
-    --------
-    >>> import facegear as fg
-    >>> drive = fg.Drive(26, 130, 3.175e-3, shaper_teeth=28)
-    >>> nominal = fg.UnloadedContact(drive)
-    >>> shifted = fg.UnloadedContact(drive, fg.Misalignment(gear_axial=2e-5))
-    >>> bool(shifted.backlash < nominal.backlash)
-    True
-    """
-
-    offset: float = 0.0
-    gear_axial: float = 0.0
-    pinion_axial: float = 0.0
-    shaft_angle: float = 0.0
-    pivot: float | None = None
-
-    def __post_init__(self) -> None:
-        for part in fields(self):
-            value = getattr(self, part.name)
-            if value is not None or part.name != "pivot":
-                keep(self, **{part.name: _error(part.name, value)})
-
-
-def _error(name: str, value: object) -> float:
-    """Check one of the fields of :class:`Misalignment`."""
-    unit, most, meant = ("rad", _WIDEST, "degrees") if name == "shaft_angle" else ("m", _LONGEST, "mm")
-    if name == "pivot":
-        most = _FARTHEST
-    number = finite(name, value, unit)
-    if abs(number) <= most:
-        return number
-    smaller = math.radians(number) if meant == "degrees" else 1e-3 * number
-    hint = f" (in {meant}? {name}={smaller:.4g} would be valid)" if abs(smaller) <= most else ""
-    kind = "" if name == "pivot" else ", as errors of alignment are"
-    raise ValueError(f"{name} must be at most {most:g} {unit} either way{kind}; got {number!r} {unit}{hint}")
-
-
-ALIGNED = Misalignment()
-"""Both gears where they belong."""
-
-
-@dataclass(frozen=True)
-class Ellipse:
-    """Contact ellipse of two elastic bodies pressed together (Hertz).
-
-    Attributes
-    ----------
-    long, short : float
-        Semi-axes [m].
-    approach : float
-        By which bodies come nearer [m].
-    pressure : float
-        In the middle [Pa].
-    """
-
-    long: float
-    short: float
-    approach: float
-    pressure: float
 
 
 @dataclass(frozen=True)
@@ -188,7 +81,7 @@ class UnloadedContact:
 
     def _fault(self) -> str | None:
         """Say what the misalignment leaves none of, if it does."""
-        if not self._rising:
+        if not self.lines.rising:
             return (
                 "normal of the flank that touches the pinion's base circle: its teeth and those of the gear do not "
                 "meet"
@@ -224,38 +117,24 @@ class UnloadedContact:
             else ""
         )
 
-    # --- where ------------------------------------------------------------------------------------------------
+    @cached_property
+    def lines(self) -> ActionLines:
+        """Lines of action of the two gears."""
+        return ActionLines(self.drive, self.misalignment)
+
+    @property
+    def _shaper(self) -> Drive:
+        return self.drive.generating
+
+    @property
+    def _region(self) -> ContactRegion:
+        return self._shaper.contact_region
 
     @cached_property
     def pressure_angle(self) -> float:
         """Local pressure angle q of the contact [rad], the same all through the mesh."""
         # Of several the one next to the nominal pressure angle.
-        return min(self._rising, key=lambda q: abs(q - self.drive.pressure_angle))
-
-    @cached_property
-    def _rising(self) -> tuple[float, ...]:
-        """Those of the roots where flanks touch from outside."""
-        return tuple(self._root(change) for change in self._changes if change.rises)
-
-    @property
-    def roots(self) -> tuple[float, ...]:
-        """All local pressure angles at which a normal touches the pinion's base circle [rad], ascending.
-
-        Where the distance rises through it flanks touch from outside; where it falls they would have to cross.
-        """
-        return tuple(self._root(change) for change in self._changes)
-
-    @cached_property
-    def _changes(self) -> tuple[_Change, ...]:
-        values = self.residual(_ANGLES)
-        # Not a number where the gear cannot turn a normal square to the pinion: no change of sign.
-        (found,) = np.nonzero(values[:-1] * values[1:] <= 0.0)
-        return tuple(
-            _Change(float(_ANGLES[i]), float(_ANGLES[i + 1]), values[i] < values[i + 1]) for i in found
-        )
-
-    def _root(self, change: _Change) -> float:
-        return root(lambda q: float(self.residual(q)), change.first, change.last)
+        return min(self.lines.rising, key=lambda q: abs(q - self.drive.pressure_angle))
 
     @property
     def position(self) -> float:
@@ -282,8 +161,6 @@ class UnloadedContact:
         first = min(region.edge_angle(shaper.flank_start, roll) for roll in rolls)
         return first, max(region.edge_angle(shaper.outer_radius, roll) for roll in rolls)
 
-    # --- when -------------------------------------------------------------------------------------------------
-
     @property
     def contact_ratio(self) -> float:
         """Mesh periods that a pair of teeth touches."""
@@ -297,7 +174,7 @@ class UnloadedContact:
         Between the edges of the face; where the pinion's base circle or the shaper's tip comes first, there.
         """
         q, region, shaper = self.pressure_angle, self._region, self._shaper
-        start = float(self._line(q)[2])
+        start = float(self.lines.at(q)[2])
         base, own = shaper.base_radius, self.drive.base_radius
         lowest = max(0.0, -start / base)
         highest = min((own * self.drive.pinion_tip_roll - start) / base, shaper.shaper_tip_roll)
@@ -326,62 +203,6 @@ class UnloadedContact:
         if radius > shaper.outer_radius:
             return f"outside the outer edge at {1e3 * shaper.outer_radius:.3f} mm, where an edge bears"
         return "off the height of the tooth, where its top or the pinion's tip bears"
-
-    # --- the pair of gears ------------------------------------------------------------------------------------
-
-    @property
-    def _shaper(self) -> Drive:
-        return self.drive.generating
-
-    @property
-    def _region(self) -> ContactRegion:
-        return self._shaper.contact_region
-
-    @cached_property
-    def _gear_axis(self) -> Vector:
-        supplement = math.pi - self.drive.shaft_angle
-        return 0.0, math.sin(supplement), math.cos(supplement)
-
-    @cached_property
-    def _pinion_axis(self) -> tuple[Vector, Vector]:
-        """A point of the pinion's axis, and its direction."""
-        given, offset = self.misalignment, self.drive.axis_offset
-        pivot = offset / math.tan(self.drive.shaft_angle) if given.pivot is None else given.pivot
-        x, y, z = (-given.gear_axial * part for part in self._gear_axis)
-        at = (given.offset + x, -offset + y, pivot + z)
-        return at, (0.0, math.sin(given.shaft_angle), math.cos(given.shaft_angle))
-
-    def turn(self, q: ArrayLike) -> FloatArray:
-        """ψ, by which the gear turns from where the shaper made q until the normal is square to the pinion [rad]."""
-        normal, axis, k = _normal(q), self._pinion_axis[1], self._gear_axis
-        along = _dot(normal, k) * _dot(k, axis)
-        cosine, sine = _dot(normal, axis) - along, _dot(_cross(k, normal), axis)
-        # cosine cos ψ + sine sin ψ + along = 0, of which the smaller root; not a number where there is none.
-        size, phase = np.hypot(cosine, sine), np.arctan2(sine, cosine)
-        with np.errstate(invalid="ignore"):
-            swing = np.arccos(-along / np.where(size > 0.0, size, 1.0))
-        both = np.stack([phase + swing, phase - swing])
-        both = np.where(size > 0.0, (both + math.pi) % (2.0 * math.pi) - math.pi, 0.0)
-        return np.asarray(np.where(np.abs(both[0]) < np.abs(both[1]), *both), dtype=float)
-
-    def _line(self, q: ArrayLike) -> tuple[Vector, FloatArray, FloatArray]:
-        """Lines of action at q: directions n, distances from the pinion's axis, places of θs = 0.
-
-        These are measured along the line from its foot on the pinion's base circle [m]; a roll angle θs adds r_bs θs.
-        """
-        turn = self.turn(q)
-        base = self._shaper.base_radius
-        made_at = (base * np.sin(q), -base * np.cos(q), self._region.position(np.asarray(q)))
-        (x, y, z), normal = (_rotated(vector, self._gear_axis, turn) for vector in (made_at, _normal(q)))
-        at, axis = self._pinion_axis
-        away = (x - at[0], y - at[1], z - at[2])
-        return normal, np.asarray(_dot(away, _cross(axis, normal))), np.asarray(_dot(away, normal))
-
-    def residual(self, q: ArrayLike) -> FloatArray:
-        """A(q), by how much normals pass the pinion's base circle at a distance [m]."""
-        return self._line(q)[1] - self.drive.base_radius
-
-    # --- gap and curvature ------------------------------------------------------------------------------------
 
     def gap(self, position: ArrayLike) -> FloatArray:
         """Gap between the flanks along the normal, in slices along the face, the same at every rotation [m].
@@ -412,26 +233,7 @@ class UnloadedContact:
                 f"flank has points; got {bad:.6g} m{hint}"
             )
         angles = np.arccos(float(self._region.position(0.0)) / u)
-        return self._offset(angles) - self._offset(self.pressure_angle)
-
-    def _offset(self, q: ArrayLike) -> FloatArray:
-        """Gap of the slice at q but for a constant: place of the gear's tangent plane less that of the pinion's [m]."""
-        shaper = self._shaper
-        # At one rotation of the gear, θs = q + ψ/m but for a constant; θ1 is the direction of n about the pinion.
-        gear = self._line(q)[2] + shaper.base_radius * (np.asarray(q) + self.turn(q) / shaper.speed_ratio)
-        return np.asarray(gear - self.drive.base_radius * self.direction(q), dtype=float)
-
-    def direction(self, q: ArrayLike) -> FloatArray:
-        """Angle about the pinion's axis of the normals at q, which is its roll angle θ1 but for a rotation [rad]."""
-        normal = self._line(q)[0]
-        across = _cross(self._pinion_axis[1], (1.0, 0.0, 0.0))
-        return np.asarray(np.arctan2(-_dot(normal, across), -normal[0]), dtype=float)
-
-    def own_roll(self, q: ArrayLike, roll: ArrayLike) -> FloatArray:
-        """Roll angle of the pinion's involute next to the point (q, θs) of the gear's flank [rad]."""
-        return np.asarray(
-            (self._line(q)[2] + self._shaper.base_radius * np.asarray(roll)) / self.drive.base_radius
-        )
+        return self.lines.offset(angles) - self.lines.offset(self.pressure_angle)
 
     @property
     def principal_curvatures(self) -> FloatArray:
@@ -457,35 +259,14 @@ class UnloadedContact:
             `roll` is not a number, or not on the path.
         """
         roll = within("roll", roll, *self._rolls, "rad")
-        return np.asarray(np.linalg.eigvalsh(self._curvature_tensor(roll)), dtype=float)
+        return np.asarray(
+            np.linalg.eigvalsh(self.lines.curvature_tensor(self.pressure_angle, roll)), dtype=float
+        )
 
     @property
     def rolls(self) -> FloatArray:
         """Roll angles θs of the shaper at the ends of the path of contact, ascending, shape (2,) [rad]."""
         return np.array(self._rolls)
-
-    def _curvature_tensor(self, roll: float) -> FloatArray:
-        """Second derivatives of the gap in the tangent plane, along the pinion's profile and its axis, (2, 2) [1/m]."""
-        q, base = self.pressure_angle, self._shaper.base_radius
-        normal, _, start = self._line(q)
-        axis = np.array(self._pinion_axis[1])
-        profile = np.cross(axis, normal)
-        shaper_axis = np.array(_rotated((0.0, 0.0, 1.0), self._gear_axis, self.turn(q)))
-        shaper_profile = np.cross(shaper_axis, normal)
-        # The shaper touches the gear along a line at β to its axis, and is flatter than the gear across it by κ.
-        m, supplement = self._shaper.speed_ratio, math.pi - self.drive.shaft_angle
-        p, k, t = m * math.sin(supplement), 1.0 - m * math.cos(supplement), math.tan(q)
-        rest = k * t * ((1.0 - k) * roll + k * t) - (p * math.cos(q)) ** 2 * roll * (roll - t)
-        kappa = ((k * t / roll) ** 2 + (p * math.cos(q)) ** 2) * roll / (base * rest)
-        beta = math.atan2(roll * p * math.cos(q), k * t)
-        across = math.cos(beta) * shaper_profile - math.sin(beta) * shaper_axis
-        pairs = (
-            (1.0 / (float(start) + base * roll), profile),
-            (-1.0 / (base * roll), shaper_profile),
-            (kappa, across),
-        )
-        frame = np.stack([profile, axis])
-        return np.asarray(sum(size * np.outer(frame @ v, frame @ v) for size, v in pairs), dtype=float)
 
     def hertz(self, force: float, modulus: float) -> Ellipse:
         """Contact ellipse under a force, in the middle of the path.
@@ -509,13 +290,8 @@ class UnloadedContact:
             If an argument is not a number greater than 0, `force` is below 1e-12 N, `modulus` above 1e15 Pa, or the
             ellipse would be longer than the gear.
         """
-        force, modulus = positive("force", force, "N"), positive("modulus", modulus, "Pa")
-        if force < _LEAST_FORCE:
-            raise ValueError(f"force must be at least {_LEAST_FORCE:g} N, got {force!r} N")
-        if modulus > _LARGEST_MODULUS:
-            raise ValueError(f"modulus must be at most {_LARGEST_MODULUS:g} Pa, got {modulus!r} Pa")
         smaller, larger = self.principal_curvatures.tolist()
-        ellipse = _hertz(smaller, larger, force, modulus)
+        ellipse = contact_ellipse(smaller, larger, force, modulus)
         if ellipse.long > self.drive.outer_radius:
             raise ValueError(
                 f"modulus must be in Pa (some 1.1e11 for steel on steel) and force in N; with modulus={modulus!r} and "
@@ -545,18 +321,16 @@ class UnloadedContact:
         depth = nonnegative("depth", depth, "m")
         shaper, middle = self._shaper, self.pressure_angle
         roll = 0.5 * sum(self._rolls)
-        here = float(self._offset(middle))
+        here = float(self.lines.offset(middle))
 
         def excess(q: float) -> float:
-            return float(self._offset(q)) - here - depth
+            return float(self.lines.offset(q)) - here - depth
 
         ends = []
         for edge in (shaper.flank_start, shaper.outer_radius):
             q = self._region.edge_angle(edge, roll)
             ends.append(q if excess(q) <= 0.0 else float(brentq(excess, middle, q, xtol=1e-15)))
         return float(self._region.position(ends[0])), float(self._region.position(ends[1]))
-
-    # --- what errors do ---------------------------------------------------------------------------------------
 
     def window(self, error: str) -> tuple[float, float]:
         """Range of one error of alignment in which contact stays on the flank, all others as they are.
@@ -584,7 +358,7 @@ class UnloadedContact:
         """
         one_of("error", error, ("offset", "gear_axial", "shaft_angle"))
         start, module = getattr(self.misalignment, error), self.drive.module
-        unit, most = (1.0, _WIDEST) if error == "shaft_angle" else (module, min(10.0 * module, _LONGEST))
+        unit, most = (1.0, WIDEST) if error == "shaft_angle" else (module, min(10.0 * module, LONGEST))
 
         def holds(value: float) -> bool:
             return abs(value) <= most and _touches(self.drive, replace(self.misalignment, **{error: value}))
@@ -616,57 +390,6 @@ class UnloadedContact:
         return 2.0 * centre * (involute(alpha) - involute(working))
 
 
-@lru_cache(maxsize=64)
-def aligned_contact(drive: Drive) -> UnloadedContact:
-    """Contact of aligned gears, found once for all that follows it."""
-    return UnloadedContact(drive)
-
-
-@dataclass(frozen=True)
-class PointPath(TimedPairs):
-    """Path of the unloaded contact of aligned gears: each pair at one place along the face, on the line of action.
-
-    Parameters
-    ----------
-    drive : Drive
-        Its `shaper_teeth` exceed `pinion_teeth`.
-    contact_ratio : float, optional
-        Mesh periods that a tooth pair stays in mesh, 1 or more; that of the contact itself is
-        `UnloadedContact(drive).contact_ratio`. Default Tregold's, `drive.contact_ratio`, which is nearly the same.
-
-    Raises
-    ------
-    TypeError, ValueError
-        `contact_ratio` is not valid for the drive, or contact is along lines.
-    """
-
-    def __post_init__(self) -> None:
-        _ = self._contact
-        super().__post_init__()
-
-    @property
-    def _contact(self) -> UnloadedContact:
-        return aligned_contact(self.drive)
-
-    @property
-    def pitch_passage(self) -> float:
-        """Mesh periods since entry at which a pair passes the pitch point, where the roll angle is tan α_c."""
-        first, last = self._contact.rolls
-        return float((math.tan(self.drive.pressure_angle) - first) / (last - first)) * self.contact_ratio
-
-    def _states(self, ages: FloatArray, in_mesh: NDArray[np.bool_]) -> PairStates:
-        first, last = self._contact.rolls
-        roll = first + (last - first) * ages / self.contact_ratio
-        x, y, _ = np.moveaxis(self.drive.contact_region.point(self._contact.pressure_angle, roll), -1, 0)
-        none = np.zeros(ages.shape)
-        return PairStates(
-            np.asarray(in_mesh),
-            np.where(in_mesh, np.hypot(x, y), none),
-            np.where(in_mesh, np.arctan2(x, -y), none),
-            none,
-        )
-
-
 def _touches(drive: Drive, misalignment: Misalignment) -> bool:
     """Whether a misalignment leaves contact, without the message that says why it does not."""
     return _unchecked(drive, misalignment)._fault() is None
@@ -677,31 +400,6 @@ def _unchecked(drive: Drive, misalignment: Misalignment) -> UnloadedContact:
     contact = object.__new__(UnloadedContact)
     keep(contact, drive=drive, misalignment=misalignment)
     return contact
-
-
-def _normal(q: ArrayLike) -> Vector:
-    """N(q), unit normals of the flank where the shaper makes it."""
-    return -np.cos(q), -np.sin(q), 0.0
-
-
-def _dot(one: Vector, other: Vector) -> Any:
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
-
-
-def _cross(one: Vector, other: Vector) -> Vector:
-    (a, b, c), (x, y, z) = one, other
-    return b * z - c * y, c * x - a * z, a * y - b * x
-
-
-def _rotated(vector: Vector, axis: Vector, angle: FloatArray) -> Vector:
-    """Rotate a vector about a unit axis (Rodrigues)."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    along = _dot(vector, axis) * (1.0 - cosine)
-    x, y, z = (
-        own * cosine + square * sine + along * part
-        for own, square, part in zip(vector, _cross(axis, vector), axis, strict=True)
-    )
-    return x, y, z
 
 
 def _where_positive(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
@@ -715,24 +413,3 @@ def _where_positive(function: Callable[[float], float], low: float, high: float)
         return (low, low) if first > last else (high, high)
     place = float(brentq(function, low, high, xtol=1e-16, rtol=8.9e-16))
     return (place, high) if first < 0.0 else (low, place)
-
-
-def _hertz(smaller: float, larger: float, force: float, modulus: float) -> Ellipse:
-    """Ellipse for two principal curvatures of the gap [1/m], both positive.
-
-    Semi-axes follow from Carlson's integrals (Johnson, Contact Mechanics, section 4.2): a curvature is
-    F/(πE*) R_D(0, other², own²) of the semi-axes, the approach 3F/(2πE*) R_F(0, long², short²).
-    """
-
-    def excess(logarithm: float) -> float:
-        k = math.exp(logarithm)  # (short/long)²
-        return math.log(float(elliprd(0.0, 1.0, k)) / float(elliprd(0.0, k, 1.0))) - math.log(
-            larger / smaller
-        )
-
-    k = math.exp(float(brentq(excess, -80.0, 0.0, xtol=1e-14))) if larger > smaller else 1.0
-    scale = force / (math.pi * modulus)
-    long = (scale * float(elliprd(0.0, k, 1.0)) / smaller) ** (1.0 / 3.0)
-    short = long * math.sqrt(k)
-    approach = 1.5 * scale * float(elliprf(0.0, long**2, short**2))
-    return Ellipse(long, short, approach, 1.5 * force / (math.pi * long * short))

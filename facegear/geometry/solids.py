@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.geometry.contact_lines import ContactRegion, root
+from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive
 from facegear.geometry.flanks import gear_to_fixed, shaper_points, shaper_to_fixed, shaper_to_gear
 from facegear.support.parameters import integer_at_least
+from facegear.support.roots import root
 from facegear.support.types import FloatArray
 from facegear.symbolic import twins
 

@@ -142,11 +142,11 @@ def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]
     from joblib import Parallel, delayed
 
     jobs = number_of_workers("jobs", jobs)
-    tasks = (delayed(_on_one_thread)(function, *arguments) for arguments in work)
+    tasks = (delayed(on_one_thread)(function, *arguments) for arguments in work)
     yield from Parallel(n_jobs=jobs, return_as="generator")(tasks)
 
 
-def _on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
+def on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
     _begin_as_worker()
     with one_thread():
@@ -192,7 +192,7 @@ def _in_parallel(
     if tasks and (len(tasks) == 1 or (together and prefer == "processes")):
         # The first of them tells how long the others take.
         started = time.perf_counter()
-        yield _on_one_thread(_run, *tasks[0])
+        yield on_one_thread(_run, *tasks[0])
         tasks = tasks[1:]
         if not tasks:
             return
@@ -203,7 +203,7 @@ def _in_parallel(
     if together:
         # Threads share one limit: set before the first, or each would restore what another has set.
         here = getattr(backend, "uses_threads", False) or effective_n_jobs(jobs) == 1
-        work = (delayed(_run)(*task) if here else delayed(_on_one_thread)(_run, *task) for task in tasks)
+        work = (delayed(_run)(*task) if here else delayed(on_one_thread)(_run, *task) for task in tasks)
         with one_thread():
             yield from Parallel(n_jobs=jobs, prefer=prefer, return_as="generator_unordered", batch_size=1)(
                 work
@@ -213,7 +213,7 @@ def _in_parallel(
         size = 4 * effective_n_jobs(jobs)
         for start in range(0, len(tasks), size):
             yield from Parallel(n_jobs=jobs, batch_size=1)(
-                delayed(_on_one_thread)(_run, *task) for task in tasks[start : start + size]
+                delayed(on_one_thread)(_run, *task) for task in tasks[start : start + size]
             )
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,7 +20,7 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.response import SteadyResponse, steady_response
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.stability_map import checked_speeds, checked_values, speed_coordinates
-from facegear.support.parameters import number_of_workers
+from facegear.support.parameters import number_of_workers, within
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
@@ -33,7 +32,7 @@ _CHUNK = 16
 # What is said of the displacement and of the force of each load, in the order of the results.
 _STATISTICS = ("mean", "rms", "lowest", "highest")
 _QUANTITIES = {"displacement": "u of the load", "force": "force of the load"}
-# Part of its speed to which that of a peak is found: the square of what this is of its width is missing in its height.
+# Part of its speed to which that of a peak is found.
 _RESOLUTION = 1e-8
 # Harmonics of the mesh that are looked for between speeds.
 _HARMONICS = 6
@@ -46,6 +45,8 @@ def frequency_response(
     model: Model,
     speeds: ArrayLike,
     *,
+    together: Sequence[Sequence[int]] | None = None,
+    resolution: float = _RESOLUTION,
     method: Method | None = None,
     jobs: int = -1,
     progress: bool | None = None,
@@ -59,6 +60,12 @@ def frequency_response(
         With forces or transmission errors, such as :class:`facegear.floquet.models.Excited`.
     speeds : array_like, shape (S,)
         Speeds [rad/s], greater than 0, ascending.
+    together : sequence of sequence of int, optional
+        Numbers of loads whose forces are added up, such as those of all tooth pairs of a mesh: "load" then numbers
+        these sums, which have no displacement. Default: each load for itself.
+    resolution : float
+        Part of its speed to which that of a peak is found, 1e-12 to 1e-2: of its height, the square of what this is of
+        its width is missing.
     method : Method, optional
         See :func:`facegear.floquet.response.steady_response`.
     jobs, progress, cache_directory
@@ -70,10 +77,10 @@ def frequency_response(
         Along "speed" and "load", of the displacement u of each load and of its force, in the units of the model: mean
         over the period, rms of what varies, lowest and highest value. Along "speed": `spectral_radius`, `condition`
         (:class:`facegear.floquet.response.SteadyResponse`). Not a number where the model is unstable at that speed, or
-        no response is known. Along "peak": speed, load, rms of the force and label of the local maxima of that rms
-        that show at the speeds, or where a natural frequency of the mean system meets one of the first six harmonics
-        of the mesh between speeds too far apart to show it. Narrower peaks from elsewhere may be missed, and the first
-        and last speed are none.
+        no response is known. Along "peak": speed, load, rms, lowest and highest value of the force, and label of the
+        local maxima of that rms that show at the speeds, or where a natural frequency of the mean system meets one of
+        the first six harmonics of the mesh between speeds too far apart to show it. Narrower peaks from elsewhere may
+        be missed, and the first and last speed are none.
 
     Raises
     ------
@@ -96,20 +103,19 @@ def frequency_response(
     require_model(model)
     jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
-    loads = _excited_loads(system_at(model, float(speeds[0])))
-    found = _computed([model], speeds, loads, method, jobs, progress, cache_directory)[0]
+    resolution = within("resolution", resolution, 1e-12, 1e-2)
+    asked = _asked(system_at(model, float(speeds[0])), method, together)
+    found = _computed([model], speeds, asked, jobs, progress, cache_directory)[0]
     _require_some(found, model, float(speeds[0]), method)
-    between = _resonances_between(model, speeds)
+    between = _resonances_between(model, speeds, resolution)
     at = np.concatenate([speeds, between])
-    every = np.concatenate(
-        [found, _computed([model], between, loads, method, jobs, progress, cache_directory)[0]]
-    )
-    dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, method)
+    every = np.concatenate([found, _computed([model], between, asked, jobs, progress, cache_directory)[0]])
+    dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, asked)
     dataset.attrs["peaks"] = (
         "local maxima that show at the speeds, or where one of the first six harmonics of the mesh meets a natural "
         "frequency of the mean system; none at the first and last speed"
     )
-    return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], method))
+    return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], asked, resolution))
 
 
 @one_thread()
@@ -164,15 +170,30 @@ def response_map(
     given = checked_values(values)
     path = parameter_path(model, parameter)
     models = [replace_parameter(model, parameter, value) for value in given.tolist()]
-    loads = _excited_loads(system_at(models[0], float(speeds[0])))
-    found = _computed(models, speeds, loads, method, jobs, progress, cache_directory)
+    asked = _asked(system_at(models[0], float(speeds[0])), method)
+    found = _computed(models, speeds, asked, jobs, progress, cache_directory)
     _require_some(found, models[0], float(speeds[0]), method)
     along = {path[-1]: (path[-1], given, {"long_name": ".".join(path)})}
-    return _dataset(found, (path[-1], "speed"), along | speed_coordinates(speeds), model, method)
+    return _dataset(found, (path[-1], "speed"), along | speed_coordinates(speeds), model, asked)
 
 
-def _excited_loads(system: PeriodicSystem) -> int:
-    """Return the number of loads of a system that has some, and what excites it."""
+class _Asked(NamedTuple):
+    """What is asked of each speed: method, number of loads, loads whose forces are added up."""
+
+    method: Method | None
+    loads: int
+    together: tuple[tuple[int, ...], ...] | None
+
+    @property
+    def rows(self) -> int:
+        """Number of loads, or of their sums."""
+        return self.loads if self.together is None else len(self.together)
+
+
+def _asked(
+    system: PeriodicSystem, method: Method | None, together: Sequence[Sequence[int]] | None = None
+) -> _Asked:
+    """Say what is asked of a system that has loads, and what excites it."""
     if system.force is None and all(load.transmission_error is None for load in system.loads):
         raise ValueError(
             "model must have a force or a transmission error, or it stands still; "
@@ -180,7 +201,15 @@ def _excited_loads(system: PeriodicSystem) -> int:
         )
     if not system.loads:
         raise ValueError("model must have a load whose response is asked for; got a system without loads")
-    return len(system.loads)
+    count = len(system.loads)
+    if together is None:
+        return _Asked(method, count, None)
+    groups = tuple(tuple(group) for group in together)
+    if not groups or any(not group or not set(group) <= set(range(count)) for group in groups):
+        raise ValueError(
+            f"together must list numbers of loads, 0 to {count - 1}, in one group or more, got {together!r}"
+        )
+    return _Asked(method, count, groups)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,41 +220,40 @@ class _Chunk:
     place: slice
     model: Model
     speeds: FloatArray
-    method: Method | None
-    loads: int
+    asked: _Asked
 
     def content(self) -> Iterator[Any]:
         """Everything the result depends on."""
-        yield repr(self.method)
+        yield repr(self.asked.method)
+        if self.asked.together is not None:
+            yield repr(self.asked.together)
         for speed in self.speeds.tolist():
             yield from parts_of(self.model.system(speed))
 
     def compute(self) -> FloatArray:
-        """Return numbers of each speed, shape (speeds, loads, 10)."""
-        rows = []
-        for speed in self.speeds.tolist():
-            rows.append(_numbers(self.model, speed, self.method))
-            if len(rows[-1]) != self.loads:
-                raise ValueError(
-                    f"model must have as many loads at all speeds and values, {self.loads} as at the first; got "
-                    f"{len(rows[-1])} at {speed:.6g} rad/s"
-                )
-        return np.stack(rows)
+        """Return numbers of each speed, shape (speeds, rows, 10)."""
+        return np.stack([_numbers(self.model, speed, self.asked) for speed in self.speeds.tolist()])
 
 
-def _response(model: Model, speed: float, method: Method | None) -> SteadyResponse | None:
+def _response(model: Model, speed: float, asked: _Asked) -> SteadyResponse | None:
     """Steady response at a speed [rad/s], or None where there is none: unstable, or a multiplier close to 1."""
+    system = model.system(speed)
+    if len(system.loads) != asked.loads:
+        raise ValueError(
+            f"model must have as many loads at all speeds and values, {asked.loads} as at the first; got "
+            f"{len(system.loads)} at {speed:.6g} rad/s"
+        )
     try:
-        return steady_response(model.system(speed), method, allow_unstable=True)
+        return steady_response(system, asked.method, allow_unstable=True)
     except ArithmeticError:
         return None
 
 
-def _numbers(model: Model, speed: float, method: Method | None) -> FloatArray:
-    """Statistics of displacement and force of each load, spectral radius and condition, shape (loads, 10)."""
-    response = _response(model, speed, method)
+def _numbers(model: Model, speed: float, asked: _Asked) -> FloatArray:
+    """Statistics of displacement and force of each row, spectral radius and condition, shape (rows, 10)."""
+    response = _response(model, speed, asked)
     if response is None:
-        return np.full((len(model.system(speed).loads), 10), np.nan)
+        return np.full((asked.rows, 10), np.nan)
 
     def statistics(function: Callable[[FloatArray], FloatArray]) -> list[FloatArray]:
         values = function(response.instants)
@@ -233,7 +261,16 @@ def _numbers(model: Model, speed: float, method: Method | None) -> FloatArray:
         rms = np.sqrt(response.weights @ (values - mean) ** 2)
         return [mean, rms, *response.extremes(lambda _: values)]
 
-    parts = statistics(response.contact_displacements) + statistics(response.contact_forces)
+    def forces(x: FloatArray) -> FloatArray:
+        each = response.contact_forces(x)
+        if asked.together is None:
+            return each
+        return np.stack([each[:, list(group)].sum(axis=1) for group in asked.together], axis=1)
+
+    if asked.together is None:
+        parts = statistics(response.contact_displacements) + statistics(forces)
+    else:
+        parts = [np.full(asked.rows, np.nan)] * len(_STATISTICS) + statistics(forces)
     if not response.is_stable:
         parts = [np.full_like(part, np.nan) for part in parts]
     whole = (np.full_like(parts[0], number) for number in (response.spectral_radius, response.condition))
@@ -243,19 +280,18 @@ def _numbers(model: Model, speed: float, method: Method | None) -> FloatArray:
 def _computed(
     models: Sequence[Model],
     speeds: FloatArray,
-    loads: int,
-    method: Method | None,
+    asked: _Asked,
     jobs: int,
     progress: bool | None,
     cache_directory: str | os.PathLike[str] | None,
 ) -> FloatArray:
-    """Numbers of all models at all speeds, shape (models, speeds, loads, 10)."""
+    """Numbers of all models at all speeds, shape (models, speeds, rows, 10)."""
     tasks = [
-        _Chunk(row, slice(start, start + _CHUNK), model, speeds[start : start + _CHUNK], method, loads)
+        _Chunk(row, slice(start, start + _CHUNK), model, speeds[start : start + _CHUNK], asked)
         for row, model in enumerate(models)
         for start in range(0, speeds.size, _CHUNK)
     ]
-    numbers = np.empty((len(models), speeds.size, loads, 10))
+    numbers = np.empty((len(models), speeds.size, asked.rows, 10))
     for number, result in computed(tasks, "response", jobs, progress, cache_directory):
         numbers[tasks[number].row, tasks[number].place] = result
     return numbers
@@ -272,7 +308,7 @@ def _dataset(
     dims: tuple[str, ...],
     coordinates: dict[str, Any],
     model: Model,
-    method: Method | None,
+    asked: _Asked,
 ) -> xarray.Dataset:
     import xarray
 
@@ -280,6 +316,8 @@ def _dataset(
     variables: dict[str, Any] = {}
     for number, name in enumerate(names):
         quantity, statistic = name.split("_")
+        if quantity == "displacement" and asked.together is not None:
+            continue
         text = f"{statistic} of the varying part" if statistic == "rms" else statistic
         described = {"long_name": f"{_QUANTITIES[quantity]}, {text} over the period"}
         variables[name] = ((*dims, "load"), numbers[..., number], described)
@@ -290,34 +328,39 @@ def _dataset(
         coords=coordinates | {"load": np.arange(numbers.shape[-2])},
         attrs={
             "model": repr(model),
-            "method": "default method" if method is None else repr(method),
+            "method": "default method" if asked.method is None else repr(asked.method),
             "facegear_version": version("facegear"),
         },
     )
 
 
-def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, method: Method | None) -> dict[str, Any]:
+def _peaks(
+    model: Model, speeds: FloatArray, numbers: FloatArray, asked: _Asked, resolution: float
+) -> dict[str, Any]:
     """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled.
 
     From numbers of :func:`_numbers` at ascending speeds (S,), shape (S, loads, 10).
     """
     from scipy.signal import find_peaks
 
-    peaks: list[tuple[float, int, float, str]] = []
+    peaks: list[tuple[float, int, float, float, float, str]] = []
     for load in range(numbers.shape[1]):
         rms, forces = numbers[:, load, 5], np.abs(numbers[:, load, 6:8])
         noise = _NOISE * float(np.nan_to_num(forces).max())
         # Next to where nothing is known nobody can tell.
-        known = np.flatnonzero(np.isfinite(rms))
-        for run in np.split(known, np.flatnonzero(np.diff(known) > 1) + 1):
+        finite = np.flatnonzero(np.isfinite(rms))
+        for run in np.split(finite, np.flatnonzero(np.diff(finite) > 1) + 1):
             for i in find_peaks(rms[run], prominence=max(noise, np.finfo(float).tiny))[0].tolist():
-                speed, value = _settled(model, method, load, speeds[run][i - 1 : i + 2].tolist())
-                response = _response(model, speed, method)
+                three = run[i - 1 : i + 2]
+                known = dict(zip(speeds[three].tolist(), numbers[three], strict=True))
+                speed, found = _settled(model, asked, load, known, resolution)
+                response = _response(model, speed, asked)
                 label = "" if response is None else resonance(response).label
-                peaks.append((speed, load, value, label))
+                peaks.append((speed, load, *found[load, 5:8].tolist(), label))
     peaks.sort()
-    columns = [list(column) for column in zip(*peaks, strict=True)] if peaks else [[], [], [], []]
-    places, loads, values, labels = columns
+    columns = [list(column) for column in zip(*peaks, strict=True)] if peaks else [[]] * 6
+    places, loads, values, lowest, highest, labels = columns
+    extremes = {"lowest": lowest, "highest": highest}
     return {
         "peak_speed": (
             "peak",
@@ -330,6 +373,14 @@ def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, method: Method
             np.array(values, dtype=float),
             {"long_name": "rms of the force's varying part"},
         ),
+        **{
+            f"peak_force_{name}": (
+                "peak",
+                np.array(column, dtype=float),
+                {"long_name": f"{name} force over the period"},
+            )
+            for name, column in extremes.items()
+        },
         "peak_label": (
             "peak",
             np.array(labels, dtype=str),
@@ -338,20 +389,25 @@ def _peaks(model: Model, speeds: FloatArray, numbers: FloatArray, method: Method
     }
 
 
-def _settled(model: Model, method: Method | None, load: int, bracket: list[float]) -> tuple[float, float]:
-    """Speed and rms of a load's force at a peak that lies between the ends of a bracket of three speeds."""
+def _settled(
+    model: Model, asked: _Asked, load: int, known: dict[float, FloatArray], resolution: float
+) -> tuple[float, FloatArray]:
+    """Speed and numbers at a peak of a load that lies between the first and the last of three known speeds."""
+    bracket = tuple(known)
+    numbers = dict(known)
 
-    @cache
     def depth(speed: float) -> float:
-        return -float(np.nan_to_num(_numbers(model, speed, method)[load, 5]))
+        if speed not in numbers:
+            numbers[speed] = _numbers(model, speed, asked)
+        return -float(np.nan_to_num(numbers[speed][load, 5]))
 
     if depth(bracket[1]) < min(depth(bracket[0]), depth(bracket[2])):
-        best = minimize_scalar(depth, bracket=tuple(bracket), method="brent", options={"xtol": _RESOLUTION})
-        return float(best.x), -float(best.fun)
-    return bracket[1], -depth(bracket[1])
+        minimize_scalar(depth, bracket=bracket, method="brent", options={"xtol": resolution})
+    best = min(numbers, key=depth)
+    return best, numbers[best]
 
 
-def _resonances_between(model: Model, speeds: FloatArray) -> FloatArray:
+def _resonances_between(model: Model, speeds: FloatArray, resolution: float) -> FloatArray:
     """Speeds at which a natural frequency meets a harmonic of the mesh, if none of those given is near enough to tell.
 
     Near enough is the half width of the resonance, the decay of the natural motion over its frequency.
@@ -374,5 +430,5 @@ def _resonances_between(model: Model, speeds: FloatArray) -> FloatArray:
             def away(speed: float, harmonic: int = harmonic, mode: int = mode) -> float:
                 return float(detuned(speed)[0][harmonic, mode])
 
-            found.append(brentq(away, low, high, rtol=_RESOLUTION))
+            found.append(brentq(away, low, high, rtol=resolution, xtol=resolution * low))
     return np.unique(np.array(found, dtype=float))

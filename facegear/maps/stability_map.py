@@ -615,12 +615,16 @@ def _by_cell(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, 
         return None
     radii = np.empty((len(sweep.values), speeds.size))
     places, tasks = cells.tasks()
-    try:
-        for number, result in run(tasks, "stability map", "threads"):
-            radii[places[number]] = result
-        return radii, cells.periods, cells.error_estimate(radii)
-    except UnsuitableSystemError:
+    for number, result in run(tasks, "stability map", "threads"):
+        radii[places[number]] = result
+    periods, left = cells.periods, np.flatnonzero(np.isnan(radii[:, 0]))
+    if left.size == len(sweep.values):
         return None
+    if not left.size:
+        return radii, periods, cells.error_estimate(radii)
+    others = replace(sweep, values=tuple(sweep.values[row] for row in left.tolist()))
+    radii[left], periods[left] = _by_row(others, speeds, run)
+    return radii, periods, _error_estimate(sweep, speeds, radii)
 
 
 def _by_column_or_row(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray, float]:

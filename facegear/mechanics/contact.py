@@ -1,6 +1,6 @@
 """Where the teeth of a pinion press, and when: from a path of contact points to shape vectors.
 
-A path (:class:`facegear.geometry.kinematics.ContactPath`, :class:`~facegear.geometry.kinematics.SkewLine`, or any
+A path (:class:`facegear.geometry.kinematics.ContactPath`, :class:`~facegear.geometry.skew_line.SkewLine`, or any
 class of the kind) says where each tooth pair touches at each instant of its mesh time. `Contact` puts it on a clock,
 says how the pairs in mesh share the load, and gives each load's place against t/T0; a model turns places into its own
 shape vectors, and pinions at other angles, faces or flanks into rotated, shifted, mirrored ones or such that run
@@ -21,7 +21,9 @@ from numpy.typing import NDArray
 from facegear.floquet.periodic import Rate
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, SkewLine, TimedPairs
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.skew_line import SkewLine
+from facegear.geometry.timed_pairs import TimedPairs
 from facegear.support.parameters import finite, keep, one_of, within
 from facegear.support.types import FloatArray
 
@@ -39,7 +41,7 @@ class Contact:
         Law of the contact points, called with a drive and a contact ratio or None: :class:`ContactPath`, the midpoints
         of the true contact lines; :class:`SkewLine`, the straight line of (3-22); those of
         :mod:`facegear.mechanics.paths`, on their own clocks; or another
-        :class:`facegear.geometry.kinematics.TimedPairs`.
+        :class:`facegear.geometry.timed_pairs.TimedPairs`.
     sharing : {"centroid", "mean", "each"}
         One load at the mean contact point, weighted by the lengths of the contact lines (3-21) or with equal weights,
         the only mean of a contact at a point, which has no lines; or one load for each tooth pair, numbered by age,

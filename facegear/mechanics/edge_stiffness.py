@@ -1,7 +1,7 @@
 """Stiffness of the disk against bending under driving forces in its plane, K_f of section 6.3.
 
 `edge_load_stiffness` is that of the text, from the plane stress of a force at the rim. `DrivingForce` has the force of
-a power wherever it presses (:mod:`facegear.mechanics.spread_force`); at the rim both are one matrix.
+a power wherever it presses (:mod:`facegear.mechanics.spreads`); at the rim both are one matrix.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ from facegear.geometry.drive import Drive
 from facegear.mechanics.disk import mirror_signs, unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
 from facegear.mechanics.plate import Body, plate_quadrature
-from facegear.mechanics.spread_force import RIM_POINT, Spread, points_on, pressed_stiffness, require_spread
+from facegear.mechanics.pressed_points import Spread, points_on, require_spread
+from facegear.mechanics.pressed_stiffness import pressed_stiffness
+from facegear.mechanics.spreads import RIM_POINT
 from facegear.support.parameters import (
     designed,
     integer_at_least,
@@ -246,7 +248,7 @@ class DrivingForce:
         (:func:`complete_harmonics`).
     spread : Spread
         Where the force presses, with the moment that it has at the rim. Default: at one point of the rim, as printed;
-        `FaceStrip`, `ToothPatches`, `ContactPoints` of :mod:`facegear.mechanics.spread_force` have it over the teeth.
+        `FaceStrip`, `ToothPatches`, `ContactPoints` of :mod:`facegear.mechanics.spreads` have it over the teeth.
 
     Raises
     ------

@@ -7,10 +7,10 @@ goes to 0, at the point of the unloaded contact.
 
 How a tooth gives way is a `Compliance`. Two of them are the ends of what holds the slices of a tooth together: slices
 of a Winkler bedding, each for itself (`slice`), and rigid teeth on one spring a pair (`pair`), both with the mean
-stiffness of (7-2). Between them is an elastic plate (`plate`, :mod:`facegear.mechanics.tooth_plate`), which resists
-more where its neighbours are not pressed. It has a stiffness of its own, some 2.7 times that of (7-2) with the drive of
-the examples: contact ratio and approach lie between those of the others if these are given the same, and need not
-otherwise.
+stiffness of (7-2). Between them is an elastic plate (`plate`, :mod:`facegear.mechanics.plate_compliance`), which
+resists more where its neighbours are not pressed. It has a stiffness of its own, some 2.7 times that of (7-2) with the
+drive of the examples: contact ratio and approach lie between those of the others if these are given the same, and need
+not otherwise.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
-from facegear.geometry.contact_lines import crossing
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import merged
-from facegear.geometry.point_contact import ALIGNED, Misalignment
+from facegear.geometry.misalignment import ALIGNED, Misalignment
+from facegear.geometry.timed_pairs import merged
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
+from facegear.mechanics.plate_compliance import PlateCompliance
 from facegear.mechanics.slices import Slices
-from facegear.mechanics.tooth_plate import PlateCompliance
 from facegear.mechanics.torsional import checked_factor, mesh_stiffness
 from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
+from facegear.support.roots import crossing
 from facegear.support.types import FloatArray
 
 # Instants of a mesh period that are looked at for changes of contact; how many times as many if a fit finds another.

@@ -35,7 +35,7 @@ from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import mesh_period
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
 from facegear.mechanics.plate import RadialModes

@@ -16,8 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, PairStates, TimedPairs
-from facegear.geometry.point_contact import ALIGNED, Misalignment, PointPath, aligned_contact
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.misalignment import ALIGNED, Misalignment
+from facegear.geometry.point_path import PointPath, aligned_contact
+from facegear.geometry.timed_pairs import PairStates, TimedPairs
 from facegear.mechanics.loaded_contact import (
     COMPLIANCES,
     LoadedContact,

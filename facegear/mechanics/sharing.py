@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, PairStates, TimedPairs
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.timed_pairs import PairStates, TimedPairs
 from facegear.support.parameters import one_of, positive
 from facegear.support.types import FloatArray
 

@@ -22,9 +22,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.series import ChebyshevSeries
-from facegear.geometry.contact_lines import ContactRegion, crossing, root
+from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive
-from facegear.geometry.point_contact import ALIGNED, Misalignment, UnloadedContact
+from facegear.geometry.misalignment import ALIGNED, Misalignment
+from facegear.geometry.point_contact import UnloadedContact
+from facegear.support.roots import crossing, root
 from facegear.support.types import FloatArray
 
 # Local pressure angles beyond the edges of the face that are looked at too [rad], and where a flank cannot reach.
@@ -93,13 +95,13 @@ class Slices:
     def _turn(self) -> Callable[[FloatArray], FloatArray]:
         """ψ(q) N2/Ns, what misalignment adds to the roll angle of a slice [rad]."""
         ratio = self.drive.generating.speed_ratio
-        return self._series(lambda q: self.contact.turn(q) / ratio)
+        return self._series(lambda q: self.contact.lines.turn(q) / ratio)
 
     @cached_property
     def _slope(self) -> Chebyshev:
         """dg/dq = A(q) dθ1/dq [m]: of parallel planes, one normal to each body, only their orientation counts."""
-        direction = self._series(self.contact.direction).deriv()
-        return self._series(lambda q: self.contact.residual(q) * direction(q))
+        direction = self._series(self.contact.lines.direction).deriv()
+        return self._series(lambda q: self.contact.lines.residual(q) * direction(q))
 
     def _series(self, function: Callable[[FloatArray], FloatArray]) -> Chebyshev:
         return _polynomial(_resolved(function, *self._range))
@@ -170,7 +172,7 @@ class Slices:
         least, most = (np.full(lines.shape, end) for end in self._range)
 
         def own_roll(q: FloatArray, line: FloatArray) -> FloatArray:
-            return contact.own_roll(q, self.roll(q, line))
+            return contact.lines.own_roll(q, self.roll(q, line))
 
         def at_roll(roll: float) -> FloatArray:
             return crossing(lambda q, line: self.roll(q, line) - roll, least, most, lines)

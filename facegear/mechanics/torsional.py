@@ -26,7 +26,7 @@ from facegear.floquet.modes import undamped_frequencies
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import mesh_period
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.support.parameters import (
     STEEL,

@@ -25,8 +25,8 @@ from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import mesh_period
 from facegear.geometry.phases import phase_split
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import CENTROID, Contact
 from facegear.mechanics.disk import (
     REFERENCE_SPEED,

@@ -96,3 +96,31 @@ def dynamic_load(response: xr.Dataset, static: float) -> Figure:
     ax.set(xlabel=_SPEED, ylabel="force between teeth [kN]")
     figure.legend(loc="outside lower center", ncols=3)
     return figure
+
+
+@styled
+def disk_forces(responses: Mapping[str, xr.Dataset], static: float) -> Figure:
+    """Draw the range of the force of a mesh over speed in models of the disk, one panel each; gaps where unstable.
+
+    Parameters
+    ----------
+    responses : mapping of str to xarray.Dataset
+        Name of a model to its ``force_lowest`` and ``force_highest`` [N], without the static force, over ``speed`` and
+        ``load``.
+    static : float
+        Static force of a mesh [N].
+    """
+    figure, axes = panels(len(responses), 1, 2.3 * len(responses) + 0.9)
+    for ax, (name, data) in zip(axes, responses.items(), strict=True):
+        speed = rpm(data["speed"].values)
+        highest, lowest = data["force_highest"].max("load"), data["force_lowest"].min("load")
+        low, high = (1.0 + np.asarray(part) / static for part in (lowest, highest))
+        ax.fill_between(speed, low, high, color=VERMILION, alpha=_STABLE, linewidth=0.0)
+        ax.plot(speed, high, color=VERMILION, marker=".", markersize=3, label="highest")
+        ax.plot(speed, low, color=ORANGE, marker=".", markersize=3, label="lowest")
+        ax.axhline(0.0, color=INK, linestyle="--", linewidth=1.0, label="flanks part")
+        ax.set(ylabel="force / static", title=name)
+    axes[-1].set_xlabel(_SPEED)
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return figure

@@ -46,7 +46,8 @@ def campbell(data: xr.Dataset) -> Figure:
             textcoords="offset points",
             va="top",
             fontsize=8,
-            bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6},
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+            zorder=4,  # above the motions, whose lines would strike it through
         )
     at = rpm(data["crossing_speed"].values)
     met = data["crossing_harmonic"].values * np.interp(at, speed, mesh)

@@ -32,9 +32,9 @@ def combinations(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`facegear.drives.report.combinations`.
+        From :func:`facegear.drives.report_arrays.combinations`.
     tongues : xarray.Dataset
-        From :func:`facegear.drives.report.tongue_table`.
+        From :func:`facegear.drives.report_arrays.tongue_table`.
     """
     figure, (ax,) = panels(1, 1, 4.8)
     speed, mesh = data["speed_rpm"].values, data["mesh_frequency"].values
@@ -79,9 +79,9 @@ def growth_map(chart: xr.Dataset, tongues: xr.Dataset, value: float, axis: str, 
     Parameters
     ----------
     chart : xarray.Dataset
-        From :func:`facegear.drives.report.growth_map`.
+        From :func:`facegear.drives.report_arrays.growth_map`.
     tongues : xarray.Dataset
-        From :func:`facegear.drives.report.tongue_table`.
+        From :func:`facegear.drives.report_arrays.tongue_table`.
     value : float
         The drive's own value, in SI.
     axis : str
@@ -118,7 +118,7 @@ def speed_strips(tables: Mapping[str, xr.Dataset], speeds_rpm: tuple[float, floa
     Parameters
     ----------
     tables : mapping of str to xarray.Dataset
-        Name of the model to :func:`facegear.drives.report.tongue_table`.
+        Name of the model to :func:`facegear.drives.report_arrays.tongue_table`.
     speeds_rpm : tuple of float
         Lowest and highest operating speed [rpm].
     """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, ParamSpec, TypeVar
 
 import matplotlib as mpl
@@ -111,6 +111,30 @@ def draw_border(axes: Axes, speed: Any, value: Any, growth: Any) -> None:
     """Draw the line between stable and unstable cells, if there is one."""
     if (growth > 0).any() and (growth <= 0).any():
         axes.contour(speed, value, growth, levels=[0.0], colors=INK, linewidths=0.7)
+
+
+def growth_bar(figure: Figure, axes: Sequence[Axes], drawn: Any) -> None:
+    """Put the scale of growth rates below the lowest map, as near whatever the height of the figure.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    axes : sequence of matplotlib.axes.Axes
+        What it stands for.
+    drawn : matplotlib.cm.ScalarMappable
+        Whose colours it explains.
+    """
+    height = figure.get_figheight()
+    figure.colorbar(
+        drawn,
+        ax=list(axes),
+        label="growth rate [1/s]",
+        location="bottom",
+        shrink=0.6,
+        aspect=40,
+        fraction=0.25 / height,
+        pad=0.15 / height,
+    )
 
 
 def label_line(axes: Axes, text: str, xy: tuple[float, float], xytext: tuple[float, float]) -> None:

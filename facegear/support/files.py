@@ -1,17 +1,25 @@
-"""Files that appear whole or not at all, and names for them."""
+"""Files that appear whole or not at all, and names for them.
+
+What is being written lies hidden beside its place, under a name that says for which file, on which machine and in which
+process. A process that is ended by force leaves that behind; the next one that writes to the same place clears it away
+if the process is gone.
+"""
 
 from __future__ import annotations
 
 import os
+import platform
 import re
 import shutil
 import tempfile
 import unicodedata
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 _LONGEST_STEM = 60
+# Of the name of a file in the hidden one beside it: names may have 255 bytes.
+_SHOWN = 40
 
 
 @contextmanager
@@ -50,6 +58,38 @@ def file_stem(text: str) -> str:
     return f"{stem}_" if reserved else stem or "unnamed"
 
 
+def _hidden(path: Path) -> str:
+    """Begin the name of what is hidden beside a path, for this machine."""
+    return f".{path.name[:_SHOWN]}.{file_stem(platform.node())[:20]}."
+
+
+def _clear_leftovers(path: Path) -> None:
+    """Remove what a process of this machine that is gone has left hidden beside a path."""
+    # Windows would end a process that is asked in this way whether it is there.
+    if os.name == "nt":
+        return
+    pattern = re.compile(rf"{re.escape(_hidden(path))}(\d{{1,9}})\.\w{{8}}({re.escape(path.suffix)})?")
+    for left in list(path.parent.iterdir()):
+        found = pattern.fullmatch(left.name)
+        if found is None or _is_running(int(found[1])):
+            continue
+        if left.is_dir() and not left.is_symlink():
+            shutil.rmtree(left, ignore_errors=True)
+        else:
+            with suppress(OSError):
+                left.unlink()
+
+
+def _is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        pass  # it belongs to somebody else
+    return True
+
+
 @contextmanager
 def written_whole(path: Path) -> Iterator[Path]:
     """Give a place beside a file to write to, which becomes the file when all is written.
@@ -66,7 +106,9 @@ def written_whole(path: Path) -> Iterator[Path]:
     """
     with _about(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
+        _clear_leftovers(path)
+        prefix = f"{_hidden(path)}{os.getpid()}."
+        handle, name = tempfile.mkstemp(prefix=prefix, suffix=path.suffix, dir=path.parent)
         os.close(handle)
     temporary = Path(name)
     try:
@@ -95,7 +137,8 @@ def folder_written_whole(path: Path) -> Iterator[Path]:
     """
     with _about(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+        _clear_leftovers(path)
+        temporary = Path(tempfile.mkdtemp(prefix=f"{_hidden(path)}{os.getpid()}.", dir=path.parent))
     try:
         yield temporary
         temporary.chmod(0o755)  # mkdtemp makes it private

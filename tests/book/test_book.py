@@ -345,6 +345,12 @@ def test_links_inside_the_book_lead_somewhere(address: str) -> None:
     assert not broken
 
 
+def test_the_foot_names_version_and_commit(address: str) -> None:
+    page = (PAGES / address).read_text(encoding="utf-8")
+    (foot,) = re.findall(r'<div class="extra_footer">\s*(.*?)\s*</div>', page)
+    assert re.fullmatch(r"Made by facegear \d+\.\d+\.\d+, commit [0-9a-f]{40}(\+changes)?\.", foot)
+
+
 def test_buttons_open_files_of_the_repository(address: str) -> None:
     """Launch buttons name files by their path in the repository, where its address is known, and else there are none.
 
@@ -478,6 +484,19 @@ def test_names_in_code_lead_to_their_place(visit: Callable[..., Visit]) -> None:
     page.wait_for_url("**/api.html#facegear.*")
     missing = [name for name in targets if page.locator(f'[id="{name}"]').count() != 1]
     assert not missing
+
+
+def test_types_in_docstrings_lead_to_public_names_and_to_other_libraries(visit: Callable[..., Visit]) -> None:
+    page = visit("api.html").page
+    links = page.locator(".classifier a.reference, dt > strong > a.reference, dl.field-list dt a.reference")
+    addresses = set(links.evaluate_all("links => links.map(link => link.href)"))
+    stored = {
+        line.split()[0]
+        for path in (ROOT / "book" / "inventories").glob("*.txt")
+        for line in path.read_text(encoding="utf-8").splitlines()[3:]
+    }
+    assert stored == {urlsplit(address).fragment for address in addresses if "/api.html" not in address}
+    assert {"facegear.Drive", "facegear.Contact"} <= {urlsplit(address).fragment for address in addresses}
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

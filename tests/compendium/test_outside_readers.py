@@ -6,11 +6,19 @@ import netCDF4
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 from compendium import printed
 from facegear.design.changes import effects_of_changes
-from facegear.drives import report
+from facegear.drives import report_arrays
+from facegear.drives.assessment import Assessment
+from facegear.drives.assessment_files import write_assessment
+from facegear.drives.disk_response import DiskResponse
+from facegear.drives.drive_file import parse_drive
+from facegear.drives.examples import example_text
 from facegear.drives.export import write_points
+from facegear.drives.outcome import Outcome
+from facegear.drives.variants import Variant
 from facegear.geometry.drive import Drive
 from facegear.geometry.solids import tooth_surface
 from facegear.mechanics.gearboxes import FIGURES
@@ -56,7 +64,7 @@ def test_tables_are_read_by_netcdf_c(tmp_path, names):
 
 WITHOUT_ROWS = {
     "any": lambda: table_of([]),
-    "tongues": lambda: report.tongue_table((), "Case I"),
+    "tongues": lambda: report_arrays.tongue_table((), "Case I"),
     "changes": lambda: effects_of_changes(FIGURES["7.12a"].model(), (), (20.0, 21.0), "Fig. 7.12"),
 }
 
@@ -82,6 +90,44 @@ def test_tables_are_read_by_pandas(tmp_path, names):
     assert list(frame.columns) == ["tongue", "angle_°"]
     assert frame["tongue"].tolist() == names
     assert frame["angle_°"].tolist() == columns["angle_°"]
+
+
+def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
+    """With and without a response, in torsion too; every file beside the page."""
+    file = parse_drive(example_text("gearbox_table_7_1"))
+    model = file.transverse
+    variants = [
+        Variant("=Tregold", "force keeps its direction", teeth, model) for teeth in ("rigid", "on springs")
+    ]
+    peaks = {
+        f"peak_{name}": ("peak", [1.0]) for name in ("speed", "force_rms", "force_lowest", "force_highest")
+    }
+    forces = {
+        f"force_{name}": (("speed", "load"), [[1.0], [np.nan]])
+        for name in ("mean", "rms", "lowest", "highest")
+    }
+    data = xr.Dataset(forces | peaks | {"peak_label": ("peak", ["1/1"])}, {"speed": [60.0, 61.0]})
+    found = Assessment(
+        file,
+        tuple(Outcome(variant, (), True) for variant in variants),
+        {},
+        {},
+        data,
+        "",
+        (),
+        (DiskResponse(variants[0], 0.0, None, "rigid teeth"), DiskResponse(variants[1], 1e-6, data, "")),
+    )
+    folder = write_assessment(found, tmp_path / "assessment").parent
+    arrays = sorted(path.name for path in folder.glob("*.nc"))
+    assert arrays == ["disk_response.nc", "models.nc", "torsion_response.nc"]
+    for name in arrays:
+        assert_same(folder / name)
+    models, response = (pd.read_csv(folder / f"{name}.csv") for name in ("models", "disk_response"))
+    assert models["contact"].tolist() == ["'=Tregold"] * 2
+    assert response["force_rms_N"].tolist()[0] == 1.0
+    assert response["force_rms_N"].isna().tolist() == [False, True]
+    assert response["speed_rpm"].tolist() == pytest.approx([572.957795131, 582.507091716])
+    assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 2 + [".html"] + [".nc"] * 3
 
 
 def test_points_of_a_tooth_are_read_by_pandas(tmp_path):

@@ -15,7 +15,7 @@ from facegear import Drive
 from facegear.floquet import multipliers as floquet
 from facegear.geometry import solids
 from facegear.maps.stability_map import stability_map
-from facegear.mechanics import classical
+from facegear.mechanics import classical, classical_pairs
 from facegear.plotting import interactive, style
 from tests.figures import texts
 
@@ -114,7 +114,7 @@ def test_slider_has_a_picture_with_a_description_for_every_step():
     ] == [True] * 2
 
 
-GEARS = classical.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
+GEARS = classical_pairs.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
 MATHIEU = classical.Mathieu(1.0)
 GROWTH = stability_map(MATHIEU, np.linspace(0.5, 2.5, 9), "depth", np.linspace(0.0, 0.9, 7), jobs=1)
 CHART = stability_arrays.chart(GROWTH, "Mathieu")

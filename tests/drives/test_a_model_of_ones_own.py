@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from facegear.design.changes import effects_of_changes, possible_changes
-from facegear.drives import explore, explorer, report
+from facegear.drives import explore, explorer, report_arrays
 from facegear.drives.cell import cell_detail
 from facegear.drives.cell_figure import cell_figure
 from facegear.floquet.models import Coordinate, replace_parameter
@@ -18,7 +18,7 @@ from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import mesh_period
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.maps.sensitivity import sensitivity
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import borders, tongues
@@ -177,11 +177,11 @@ def test_report_ranks_what_can_be_changed():
     table = effects_of_changes(MODEL, FOUND, SPEEDS, "own model", followed=1)
     assert sorted(table["change_name"].values) == sorted(names)
     assert np.isfinite(table["growth_slope"].values).all()
-    tongue_table = report.tongue_table(FOUND, "own model")
+    tongue_table = report_arrays.tongue_table(FOUND, "own model")
     assert tongue_table["label"].values.tolist() == [tongue.label for tongue in FOUND]
-    chart = report.combinations(MODEL, FOUND, [300.0, 400.0], "own model")
+    chart = report_arrays.combinations(MODEL, FOUND, [300.0, 400.0], "own model")
     assert chart.sizes["mode"] == 4
-    grown = report.growth_map(MODEL, "tooth_stiffness", [1e6, 2e6], [300.0, 400.0], "own model")
+    grown = report_arrays.growth_map(MODEL, "tooth_stiffness", [1e6, 2e6], [300.0, 400.0], "own model")
     assert grown["growth_rate"].shape == (2, 2)
 
 

@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from facegear.drives.assess import Assessment, Outcome, _told, _torsion, assess
+from facegear.drives.assess import _in_torsion, assess
+from facegear.drives.assessment import Assessment, _told
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
+from facegear.drives.findings import TORSION
 from facegear.drives.intervals import gaps
-from facegear.drives.tolerances import Tolerances, WorstCase
+from facegear.drives.outcome import Outcome
+from facegear.drives.tolerances import Tolerances, WorstCase, not_known
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
 from facegear.floquet.labels import Combination
@@ -101,6 +104,32 @@ class TestVerdict:
         )
         assert _told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
 
+    def test_tolerances_of_shafts_turn_torsion(self):
+        swept = ((float(rad_per_s(600.0)), float(rad_per_s(690.0))),)
+        speeds = CASE_1.requirements.speeds
+        worst = {TORSION: WorstCase(speeds, {}, swept, ())}
+        file = replace(CASE_1, tolerances=Tolerances(damping=0.2, shaft_stiffness=0.1))
+        stable = {"Tregold, arm as printed": ()}
+        found = assessment(outcome("Tregold", DEAD, RIGID), torsion=stable, worst=worst, file=file)
+        assert (found.verdict, found.decides) == (
+            "depends",
+            ("where in their tolerances stiffness, damping and speed lie",),
+        )
+        assert found.over_tolerances == (
+            "With damping of teeth ±20 %, stiffness of shafts ±10 %, torsion: unstable for some values at 600 to 690 "
+            "rpm, 10 % of the speeds.",
+        )
+        assert _told(found.always_stable) == "100 to 600, 690 to 1000 rpm"
+
+    def test_tolerances_that_could_not_be_followed_make_no_drive_safe(self):
+        file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1))
+        worst = {DEAD: not_known("transition matrices jump", file.requirements.speeds, file.tolerances)}
+        found = assessment(outcome("Tregold", DEAD, RIGID), worst=worst, file=file)
+        assert found.verdict == "depends"
+        assert found.over_tolerances == (
+            "With stiffness ±10 %, force keeps its direction: not known (transition matrices jump).",
+        )
+
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
         assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn them.")
@@ -116,7 +145,7 @@ def test_torsion_is_looked_at_in_the_tolerance_of_speed():
     wide = parse_drive(text + "\ntolerances:\n  speed_percent: 5\n")
     found = {}
     for name, file in (("as it is", stable), ("with its tolerance", wide)):
-        found[name] = _torsion(file, plain_contacts(file), 1)["Tregold, arm as printed"]
+        found[name] = tongues(*_in_torsion(file, plain_contacts(file))["Tregold, arm as printed"])
     assert found["as it is"] == ()
     assert rpm(found["with its tolerance"][-1].upper) == pytest.approx(681.8, abs=0.1)
 
@@ -207,6 +236,9 @@ def test_models_are_those_of_the_report_and_of_single_searches(tmp_path):
     )
     assert set(found.worst) == {FOLLOWER, DEAD}
     assert said[0].startswith("the drive as its file has it, in the basis of the file: unstable at ")
-    assert len(said) == 1 + 4 + 20 + 1
+    assert len(said) == 1 + 4 + 20
+    # What each shakes the disk with, of the file's own contact, or why nothing.
+    assert len(found.disk_responses) == 2 * 6
+    assert all(each.data is not None or each.reason for each in found.disk_responses)
     page = write_assessment(found, tmp_path).read_text(encoding="utf-8")
     assert "Depends on" in page or "under all" in page

@@ -1,9 +1,6 @@
 """The command `facegear`, as a stranger calls it: from any folder, with files that are right and wrong."""
 
 import argparse
-import csv
-import io
-import json
 import os
 import re
 import shutil
@@ -12,7 +9,6 @@ import subprocess
 import sys
 import time
 import warnings
-from pathlib import Path
 
 import nbformat
 import psutil
@@ -24,37 +20,14 @@ import facegear.__main__
 from facegear.drives import command, sections
 from facegear.drives.command import main
 from facegear.drives.drive_file import read_drive_file
-from facegear.drives.drive_keys import schema
 from facegear.support.labelled import load
+from tests.drives.drive_files import CASE_1, DRIVES, ROOT, rows
 from tests.drives.test_page import HOSTILE, Reader
 
-ROOT = Path(__file__).resolve().parents[2]
-EXAMPLES = sorted((ROOT / "data" / "drives").glob("*.yaml"))
-CASE_1 = (ROOT / "data" / "drives" / "case_1.yaml").read_text(encoding="utf-8")
+EXAMPLES = sorted(DRIVES.glob("*.yaml"))
 ENVIRONMENT = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 COMMAND = [sys.executable, "-m", "facegear"]
 FORCES = ("force follows the rim", "force keeps its direction")
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def rows(path):
-    with path.open(encoding="utf-8-sig") as file:
-        return list(csv.DictReader(file))
-
-
-# --- check, and how to ask --------------------------------------------------------------------------------------
-
-
-def test_there_are_eight_examples_and_all_can_be_used(capsys):
-    assert main(["check", *map(str, EXAMPLES)]) == 0
-    told = capsys.readouterr().out.splitlines()
-    assert told == [f"{path}: can be used" for path in EXAMPLES]
-    assert len(EXAMPLES) == 8
 
 
 @pytest.mark.parametrize("command", ["check", "report"])
@@ -67,31 +40,6 @@ def test_a_mistake_is_told_before_any_work(here, capsys, command):
     (line,) = err.splitlines()
     assert line.startswith("wrong.yaml: gears.module_mm must lie in [0.1, 100] in mm, got 0.003175 mm")
     assert list(here.iterdir()) == [wrong]
-
-
-def test_one_wrong_file_does_not_keep_the_others_from_being_checked(here, capsys):
-    shutil.copy(EXAMPLES[0], here / "right.yaml")
-    assert main(["check", "none.yaml", "right.yaml"]) == 1
-    out, err = capsys.readouterr()
-    assert out == "right.yaml: can be used\n"
-    assert "none.yaml' cannot be read" in err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        ([], "the following arguments are required: COMMAND"),
-        (["reprot", "a.yaml"], "invalid choice: 'reprot'"),
-        (["report"], "the following arguments are required: FILE"),
-        (["report", "a.yaml", "--cells", "0"], "must be at least 1, got 0"),
-        (["report", "a.yaml", "--tolerance", "2"], "must be 1e-6 to 0.5, got 2"),
-    ],
-)
-def test_what_cannot_be_understood(arguments, told, capsys):
-    with pytest.raises(SystemExit) as caught:
-        main(arguments)
-    assert caught.value.code == 2
-    assert told in capsys.readouterr().err
 
 
 def test_an_interruption_while_the_command_is_loaded(monkeypatch):
@@ -119,26 +67,6 @@ def test_a_replaced_worker_is_not_worth_a_word(monkeypatch, recwarn):
     monkeypatch.setattr(command, "parser", lambda: given)
     assert main([]) == 0
     assert [str(each.message) for each in recwarn] == ["something else"]
-
-
-def test_version(capsys):
-    with pytest.raises(SystemExit) as caught:
-        main(["--version"])
-    assert caught.value.code == 0
-    assert capsys.readouterr().out == f"facegear {facegear.__version__}\n"
-
-
-def test_each_command_has_examples_and_exit_codes(capsys):
-    with pytest.raises(SystemExit):
-        main(["--help"])
-    names = re.findall(r"^    (\w+)  +\w", capsys.readouterr().out, re.MULTILINE)
-    assert {"report", "check"} <= set(names)
-    for name in names:
-        with pytest.raises(SystemExit):
-            main([name, "--help"])
-        told = capsys.readouterr().out
-        assert f"examples:\n  facegear {name}" in told
-        assert "exit codes: 0 done, 1 a file cannot be used" in told
 
 
 # --- the report -------------------------------------------------------------------------------------------------
@@ -308,154 +236,3 @@ def test_the_notebook_shows_every_section_of_the_page(tmp_path):
     assert shown.count("data:image/svg+xml") == 6
     assert "There is no reference for this file." in shown
     assert (tmp_path / "build" / "drives" / "my_drive" / "tooth_mm.stl").is_file()
-
-
-# --- new, map, examples -------------------------------------------------------------------------------------------
-
-FLAGS = [
-    "--pinion-teeth",
-    "26",
-    "--gear-teeth",
-    "130",
-    "--module-mm",
-    "3.175",
-    "--thickness-ratio",
-    "0.03",
-    "--bore-radius-mm",
-    "50",
-    "--stiffness",
-    "1",
-    "--damping-us",
-    "3",
-    "--mass",
-    "1",
-    "--angles-deg",
-    "-10",
-    "120",
-    "--lowest-speed-rpm",
-    "100",
-    "--highest-speed-rpm",
-    "1000",
-    "--power-kW",
-    "447",
-    "--pinion-speed-rpm",
-    "5000",
-]
-
-
-def test_a_new_file_from_flags(here, capsys):
-    assert main(["new", "my.yaml", *FLAGS]) == 0
-    assert capsys.readouterr().out == "Written: my.yaml. Next: facegear report my.yaml\n"
-    file = read_drive_file(here / "my.yaml")
-    assert (file.name, file.drive.pinion_teeth, file.drive.module) == ("my", 26, 3.175e-3)
-    assert file.transverse.gear.pinion_angles == pytest.approx((-0.174532925, 2.094395102))
-    assert "# pressure_angle_deg: 25.0" in (here / "my.yaml").read_text(encoding="utf-8")
-
-
-def test_a_file_that_is_there_is_not_replaced_unless_told(here, capsys):
-    (here / "my.yaml").write_text("mine", encoding="utf-8")
-    assert main(["new", "my.yaml", *FLAGS]) == 2
-    assert "my.yaml is there already" in capsys.readouterr().err
-    assert (here / "my.yaml").read_text(encoding="utf-8") == "mine"
-    assert main(["new", "my.yaml", "--replace", *FLAGS]) == 0
-    assert read_drive_file(here / "my.yaml").drive.gear_teeth == 130
-
-
-def test_what_a_new_file_lacks_is_named_by_its_flags(here, capsys, monkeypatch):
-    monkeypatch.setattr(sys, "stdin", (here / "nothing").open("w+"))
-    assert main(["new", "--pinion-teeth", "26"]) == 2
-    err = capsys.readouterr().err
-    assert "give --gear-teeth, --module-mm or --diametral-pitch-per-inch, --thickness-ratio," in err
-    assert main(["new", *FLAGS, "--gear-teeth", "20"]) == 2
-    assert "my_drive.yaml: " in capsys.readouterr().err
-    assert not (here / "my_drive.yaml").exists()
-    sys.stdin.close()
-
-
-def test_on_a_terminal_it_asks_until_answers_can_be_used(here, capsys, monkeypatch):
-    # A comma, too many teeth for the gear, which turns up only with all the rest, then what is right.
-    answers = [
-        "26",
-        "20",
-        "3,175",
-        "3.175",
-        "0.03",
-        "50",
-        "1",
-        "3",
-        "1",
-        "100",
-        "1000",
-        "447",
-        "5000",
-        "26",
-        "130",
-    ]
-    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
-    monkeypatch.setattr(command, "_ask", lambda question: asked.append(question) or answers.pop(0))
-    asked = []
-    assert main(["new", "my.yaml", "--name", "Mine"]) == 0
-    assert not answers
-    assert asked[0] == "gears.pinion_teeth: N_1, teeth of the pinion (a whole number from 10 to 300)? "
-    err = capsys.readouterr().err
-    assert "a point, not a comma: 3.175" in err
-    assert "gears.gear_teeth" in err
-    assert (read_drive_file("my.yaml").name, read_drive_file("my.yaml").drive.gear_teeth) == ("Mine", 130)
-
-
-def test_an_end_of_input_leaves_nothing(here, monkeypatch, capsys):
-    monkeypatch.setattr(sys, "stdin", io.StringIO("26\n"))
-    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
-    assert main(["new", "my.yaml"]) == 130
-    assert not list(here.iterdir())
-
-
-def test_a_map_in_three_kinds_of_files(here, capsys):
-    (here / "my.yaml").write_text(CASE_1, encoding="utf-8")
-    words = [
-        "--parameter",
-        "thickness_ratio",
-        "--from",
-        "0.02",
-        "--to",
-        "0.06",
-        "--speeds",
-        "500",
-        "600",
-        "--cells",
-        "3",
-        "--jobs",
-        "1",
-    ]
-    assert main(["map", "my.yaml", *words]) == 0
-    assert capsys.readouterr().out == "".join(f"The map: my_map{end}\n" for end in (".nc", ".csv", ".svg"))
-    chart = load(here / "my_map.nc")
-    assert chart["thickness_ratio"].values == pytest.approx([0.02, 0.04, 0.06])
-    assert len(rows(here / "my_map.csv")) == 9
-    assert main(["map", "my.yaml", *words, "--output", "a/b.png"]) == 0
-    assert (here / "a" / "b.png").read_bytes()[:4] == b"\x89PNG"
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        ("--parameter no_such", "parameter must be one of module_mm"),
-        ("--from 2 --to 1", "from and to must ascend"),
-        ("--output map.xls", "--output must end in .nc, .csv, .svg, .png, .pdf, got 'map.xls'"),
-        ("--contact loaded", "contact must be tregold or geometric"),
-    ],
-)
-def test_a_map_that_there_is_not(here, capsys, words, told):
-    (here / "my.yaml").write_text(CASE_1, encoding="utf-8")
-    assert main(["map", "my.yaml", *words.split()]) == 2
-    assert told in capsys.readouterr().err
-    assert [path.name for path in here.iterdir()] == ["my.yaml"]
-
-
-def test_examples_are_listed_and_printed(capsys):
-    assert main(["examples"]) == 0
-    assert re.findall(r"^\w+$", capsys.readouterr().out, re.MULTILINE) == [path.stem for path in EXAMPLES]
-    assert main(["examples", "case_1"]) == 0
-    assert capsys.readouterr().out == CASE_1
-    assert main(["examples", "--schema"]) == 0
-    assert json.loads(capsys.readouterr().out) == schema()

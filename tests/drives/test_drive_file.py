@@ -1,9 +1,8 @@
-"""Drive files: examples, every kind of mistake, and thousands of files that nobody would write."""
+"""Drive files: examples, what does not go together, and thousands of files that nobody would write."""
 
 import math
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,32 +13,13 @@ from hypothesis import strategies as st
 from facegear.drives.drive_file import DriveFile, DriveFileError, parse_drive, read_drive_file
 from facegear.drives.drive_keys import NAME, SECTIONS
 from facegear.drives.forces import pressed
-from facegear.floquet.multipliers import growth_rate
-from facegear.geometry.drive import Drive
 from facegear.mechanics import cases, gearboxes
 from facegear.mechanics.edge_stiffness import DrivingForce
-from facegear.mechanics.loaded_contact import LoadedContact
-from facegear.mechanics.sharing import shared_load
-from facegear.mechanics.spread_force import root_thickness
-from facegear.mechanics.torsional import mesh_stiffness
-from facegear.mechanics.two_gears import TwoGears
+from facegear.mechanics.spreads import root_thickness
 from facegear.support.parameters import rad_per_s
+from tests.drives.drive_files import BOTH_FACES, CASE_1, DRIVES, GEARBOX, refusal
 
-ROOT = Path(__file__).resolve().parents[2]
-DRIVES = ROOT / "data" / "drives"
-CASE_1 = (DRIVES / "case_1.yaml").read_text(encoding="utf-8")
-GEARBOX = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
-BOTH_FACES = (DRIVES / "both_faces.yaml").read_text(encoding="utf-8")
 PATHS = [NAME.name, *SECTIONS, *(f"{n}.{key.name}" for n, s in SECTIONS.items() for key in s.keys)]
-
-
-def refusal(content):
-    with pytest.raises(DriveFileError) as caught:
-        parse_drive(content, "my.yaml")
-    message = str(caught.value)
-    assert message.startswith("my.yaml: ")
-    assert "\n" not in message
-    return message.removeprefix("my.yaml: ")
 
 
 # --- examples -------------------------------------------------------------------------------------------------
@@ -92,207 +72,6 @@ def test_clock_of_the_true_sweep():
     assert box.torsional.contact_ratio == box.drive.geometric_contact_ratio
 
 
-class TestShaperWithMoreTeeth:
-    LOCALIZED = (DRIVES / "localized.yaml").read_text(encoding="utf-8")
-
-    def test_contact_under_the_torque_of_the_file(self):
-        found = parse_drive(self.LOCALIZED)
-        assert found.drive == Drive(26, 130, 3.175e-3, shaper_teeth=27)
-        torque = 447.42e3 / rad_per_s(5000.0)
-        assert found.transverse.contact_ratio == LoadedContact(found.drive, torque).contact_ratio
-        assert list(found.contacts) == ["contact under load", "point contact"]
-        assert found.contacts["contact under load"] == found.transverse.contact
-
-    def test_contact_without_load(self):
-        found = parse_drive(self.LOCALIZED.replace("mass: 1.0", "mass: 1.0\n  contact_ratio: unloaded"))
-        assert found.transverse.contact_ratio == pytest.approx(1.557363852, abs=1e-9)
-        assert list(found.contacts) == ["point contact", "contact under load"]
-
-    def test_a_gearbox_has_the_contact_and_the_stiffness_of_its_teeth(self):
-        text = GEARBOX.replace("pinion_teeth: 31", "pinion_teeth: 31\n  shaper_teeth: 33")
-        found = parse_drive(text)
-        path = found.torsional.contact.path
-        assert path == found.transverse.contact.path
-        assert path.of(found.drive).pair_stiffness == pytest.approx(found.torsional.gearbox.mesh_stiffness)
-        assert (found.torsional.contact.sharing, found.torsional.contact.rate) == ("each", "total")
-
-    def test_teeth_that_are_stiffer_than_teeth_are_refused(self):
-        text = GEARBOX.replace("pinion_teeth: 31", "pinion_teeth: 31\n  shaper_teeth: 33")
-        stiff = re.sub(r"mesh_stiffness_N_per_m: \S+", "mesh_stiffness_N_per_m: 1e10", text)
-        with pytest.raises(
-            DriveFileError, match=r"gearbox.mesh_stiffness_N_per_m must be at most .*got 1e\+10"
-        ):
-            parse_drive(stiff)
-
-
-class TestFlexibleTeeth:
-    TEETH = CASE_1 + "\nteeth:\n  tooth_damping_us: 10\n"
-
-    def test_pinions_on_the_springs_of_their_teeth(self):
-        found, rigid = parse_drive(self.TEETH), parse_drive(CASE_1)
-        assert rigid.teeth is None
-        model = found.transverse
-        assert model.mesh_stiffness == mesh_stiffness(found.drive, 0.5, model.body.material)
-        assert model.mesh_damping == pytest.approx(1e-5, rel=1e-15)
-        assert (model.body, model.load, model.pinion_angles) == (
-            rigid.transverse.body,
-            rigid.transverse.load,
-            rigid.transverse.pinion_angles,
-        )
-        assert list(found.contacts) == list(rigid.contacts)
-        assert {contact.rate for contact in found.contacts.values()} == {"total"}
-        softer = parse_drive(self.TEETH + "  correction_factor: 0.25\n").transverse
-        assert softer.mesh_stiffness == pytest.approx(model.mesh_stiffness / 2.0, rel=1e-12)
-
-    def test_stiff_teeth_are_nearly_rigid_ones_with_total_rate(self):
-        found, speed = parse_drive(self.TEETH + "  correction_factor: 1\n"), float(rad_per_s(400.0))
-        rigid = found.transverse.rigid
-        stiff = replace(
-            found.transverse, mesh_stiffness=1e4 * found.transverse.mesh_stiffness, mesh_damping=1e-8
-        )
-        assert growth_rate(stiff.system(speed)) == pytest.approx(growth_rate(rigid.system(speed)), rel=1e-3)
-
-    @pytest.mark.parametrize("rule", ["length_share", "length", "equal"])
-    def test_pairs_share_the_load_by_a_rule(self, rule):
-        found = parse_drive(self.TEETH + f"  sharing: {rule}\n")
-        for contact in found.contacts.values():
-            assert (contact.sharing, contact.path) == ("each", shared_load(rule))
-
-    def test_pairs_share_the_load_as_it_presses_them(self):
-        text = (DRIVES / "localized.yaml").read_text(encoding="utf-8")
-        found = parse_drive(
-            text + "\nteeth:\n  tooth_damping_us: 10\n  sharing: compliance\n  correction_factor: 0.3\n"
-        )
-        contact = found.contacts["contact under load"]
-        assert (contact.sharing, contact.rate) == ("each", "total")
-        assert contact.path.correction_factor == pytest.approx(0.3, rel=1e-12)
-
-    def test_pinions_on_both_faces(self):
-        found = read_drive_file(DRIVES / "both_faces.yaml").transverse
-        assert (found.faces, found.mesh_phases, found.pinion_angles) == ((1, -1), (0.0, 0.5), (0.0, 0.0))
-
-    def test_stiffness_of_a_gearbox_is_that_of_its_teeth(self):
-        found = parse_drive(self.with_gearbox("50"))
-        assert found.transverse.mesh_stiffness == found.torsional.gearbox.mesh_stiffness
-        assert found.transverse.mesh_damping == pytest.approx(
-            found.torsional.gearbox.mesh_damping / found.torsional.gearbox.mesh_stiffness, rel=1e-12
-        )
-
-    def test_damping_that_is_left_out_is_that_of_the_gearbox(self):
-        given = parse_drive(self.with_gearbox("50")).transverse
-        for teeth in ("teeth:\n  sharing: centroid\n", "teeth: {}\n", "teeth:\n  tooth_damping_us: 0\n"):
-            text = re.sub(r"teeth:\n  tooth_damping_us: 50\n", teeth, self.with_gearbox("50"))
-            assert parse_drive(text).transverse == given
-
-    def test_a_gearbox_without_mesh_damping_has_none_for_flexible_teeth(self):
-        for own in ("0", "10"):
-            text = self.with_gearbox(own).replace("mesh_damping_us: 50", "mesh_damping_us: 0")
-            told = refusal(text)
-            assert told.startswith("gearbox.mesh_damping_us must be greater than 0 beside a section teeth")
-
-    def test_too_few_teeth_are_told_in_the_words_of_the_file(self):
-        few = self.TEETH.replace("pinion_teeth: 26", "pinion_teeth: 18").replace(
-            "gear_teeth: 130", "gear_teeth: 90"
-        )
-        few = few.replace("bore_radius_mm: 50", "bore_radius_mm: 30")
-        told = refusal(few)
-        assert re.match(
-            r"teeth: gears.pinion_teeth = 18 is too few for a section teeth, whose model follows the moving contact "
-            r"\(gears.gear_teeth = 90, .* 22 pinion teeth are enough",
-            told,
-        )
-        assert "rate" not in told.replace("ratio", "")
-        assert parse_drive(few.split("\nteeth:")[0]).teeth is None
-
-    @staticmethod
-    def with_gearbox(damping, more=""):
-        text = re.sub(r"mesh_damping_us: \S+", "mesh_damping_us: 50", GEARBOX)
-        return f"{text}\nteeth:\n  tooth_damping_us: {damping}\n{more}"
-
-    @pytest.mark.parametrize(
-        ("text", "told"),
-        [
-            (
-                TEETH + "  sharing: compliance\n",
-                "teeth.sharing must be .* for contact along lines, got 'compliance'",
-            ),
-            (
-                TEETH + "  sides: [1, 1]\n",
-                r"teeth.sides must list 1 or -1 for each pinion of pinions.angles_deg, 1 in all, got \[1, 1\]",
-            ),
-            (TEETH + "  sides: [0.5]\n", r"teeth.sides\[0\] must be 1 or -1, got 0.5"),
-            (TEETH + "  sides: [true]\n", r"teeth.sides\[0\] must be 1 or -1, got True"),
-            (TEETH + "  sides: [front]\n", r"teeth.sides\[0\] must be 1 or -1, got 'front'"),
-            (TEETH + "  sides: 1\n", "teeth.sides must be a list of 0 to 12 numbers, each 1 or -1, got 1"),
-            (
-                TEETH + "  clocking: 180\n",
-                r"clocking must lie in \[-1, 1\], got 180 \(in mesh periods, not in degrees\?\)$",
-            ),
-            (
-                TEETH + "  clocking: 0.5\n",
-                "teeth.clocking must be 0 or left out where teeth.sides has no pinion on the back .*got 0.5",
-            ),
-            (
-                TEETH + "  sides: [1]\n  clocking: 0.5\n",
-                "teeth.clocking must be 0 or left out where teeth.sides has no pinion on the back .*got 0.5",
-            ),
-            (TEETH + "  clocking: 3\n", r"teeth.clocking must lie in \[-1, 1\], got 3"),
-            (
-                TEETH.replace("mass: 1.0", "mass: 0"),
-                "pinions.mass must be greater than 0 for a pinion on flexible",
-            ),
-            (
-                CASE_1 + "\nteeth:\n  sharing: equal\n",
-                "teeth.tooth_damping_us is missing, or 0: without a section gearbox, .* from 0.001 to 10000 µs",
-            ),
-            (CASE_1 + "\nteeth:\n  tooth_damping_us: 0\n", "teeth.tooth_damping_us is missing, or 0"),
-            (
-                TEETH.replace("mass: 1.0", "mass: 1.0\n  angles_deg: [0, 0]"),
-                r"pinions.angles_deg\[1\] must differ from the other angles",
-            ),
-        ],
-    )
-    def test_what_does_not_go_together_is_refused(self, text, told):
-        with pytest.raises(DriveFileError, match=told):
-            parse_drive(text)
-
-    def test_a_gearbox_says_how_stiff_its_teeth_are(self):
-        with pytest.raises(
-            DriveFileError, match=r"teeth.correction_factor must be 0 or left out beside gearbox"
-        ):
-            parse_drive(self.with_gearbox("50", "  correction_factor: 0.4\n"))
-        with pytest.raises(
-            DriveFileError,
-            match=r"teeth.tooth_damping_us must be left out, or be that of gearbox.mesh.*, 50 µs, got 40 µs",
-        ):
-            parse_drive(self.with_gearbox("40"))
-
-
-class TestPlay:
-    def test_teeth_have_play_under_the_torque_of_a_pinion(self):
-        found = parse_drive(GEARBOX.replace("gearbox:\n", "gearbox:\n  backlash_um: 80\n"))
-        duty = found.requirements
-        assert parse_drive(GEARBOX).play is None
-        assert found.play.torsional == found.torsional == parse_drive(GEARBOX).torsional
-        assert found.play.gap == pytest.approx(8e-5, rel=1e-15)
-        assert found.play.torque == pytest.approx(duty.power / duty.pinion_speed * 107 / 31, rel=1e-12)
-
-    @pytest.mark.parametrize(
-        ("keys", "told"),
-        [
-            ("backlash_um: -3", "gearbox.backlash_um must lie in .*got -3"),
-            ("backlash_um: 1e5", "gearbox.backlash_um must be at most the module, 3175 µm, got 100000 µm"),
-            (
-                "backlash_um: 80\n  input_length_mm: 200",
-                "gearbox.backlash_um must be 0 beside lengths of shafts",
-            ),
-        ],
-    )
-    def test_what_does_not_go_together_is_refused(self, keys, told):
-        with pytest.raises(DriveFileError, match=told):
-            parse_drive(GEARBOX.replace("gearbox:\n", f"gearbox:\n  {keys}\n"))
-
-
 class TestPlaceOfTheForce:
     def test_the_rim_unless_another_place_is_given(self):
         assert parse_drive(CASE_1).force_at == "rim"
@@ -317,79 +96,6 @@ class TestPlaceOfTheForce:
         assert np.ptp(points.radius * points.angle) * drive.outer_radius == pytest.approx(
             pitch * np.polynomial.legendre.leggauss(4)[0][-1], rel=1e-9
         )
-
-
-class TestTwoGears:
-    TEXT = (DRIVES / "two_gears.yaml").read_text(encoding="utf-8")
-
-    def test_pinions_between_two_gears(self):
-        found = parse_drive(self.TEXT)
-        one = parse_drive(
-            self.TEXT.split("second_gear:")[0] + "operation:" + self.TEXT.split("operation:")[1]
-        )
-        assert one.roles is None
-        assert found.roles == ("input", "idler")
-        assert found.transverse == TwoGears(one.transverse, ("input", "idler"))
-        assert found.contacts == one.contacts
-        assert found.drive == one.drive
-
-    @pytest.mark.parametrize(
-        ("old", "new", "told"),
-        [
-            (
-                "teeth:\n  tooth_damping_us: 10\n",
-                "",
-                "second_gear must stand beside a section teeth",
-            ),
-            (
-                "us: 10\n",
-                "us: 10\n  sides: [1, 1]\n",
-                "teeth.sides and teeth.clocking must be left out beside second",
-            ),
-            (
-                "us: 10\n",
-                "us: 10\n  clocking: 0.5\n",
-                "teeth.sides and teeth.clocking must be left out beside",
-            ),
-            (
-                "[input, idler]",
-                "[input]",
-                r"second_gear.roles must list one role for each of 2 pinions, .*\['input'\]",
-            ),
-            ("[input, idler]", "[idler, idler]", "an input among them"),
-            (
-                "[input, idler]",
-                "[input, sun]",
-                r"second_gear.roles\[1\] must be input or idler or output, got 'sun'",
-            ),
-            (
-                "[input, idler]",
-                "[input, [idler]]",
-                r"second_gear.roles\[1\] must be input or idler or output, got",
-            ),
-            (
-                "[input, idler]",
-                "input",
-                "second_gear.roles must be a list of 1 to 12 words, each input or idler or",
-            ),
-            ("  roles: [input, idler]", "  {}", "second_gear.roles is missing"),
-            (
-                "module_mm: 3.175",
-                "module_mm: 3.175\n  shaft_angle_deg: 80",
-                "gears.shaft_angle_deg must be 90° beside second_gear, .*got 80°",
-            ),
-            (
-                "[0, 90]",
-                "[0, 91]",
-                r"pinions.angles_deg\[1\] must differ from the first by a whole number of halves of the angular pitch, "
-                r"1.384615385°, .* got 91°; the nearest that fits is 91.38461538°",
-            ),
-        ],
-    )
-    def test_what_does_not_go_together_is_refused(self, old, new, told):
-        assert old in self.TEXT
-        with pytest.raises(DriveFileError, match=told):
-            parse_drive(self.TEXT.replace(old, new))
 
 
 @pytest.mark.parametrize(
@@ -433,62 +139,21 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
         driven.system(1.001 * duty.speeds[1])
 
 
-# --- mistakes that people make ----------------------------------------------------------------------------------
+# --- what does not go together ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
         (
-            "module_mm: 3.175",
-            "module_mm: 0.003175",
-            r"gears.module_mm .*got 0.003175 mm .*3.175 would be valid",
-        ),
-        ("module_mm: 3.175", "module_mm: 3175", r"gears.module_mm .*got 3175 mm .*3.175 would be valid"),
-        (
-            "module_mm: 3.175",
-            "modul_mm: 3.175",
-            r"gears.modul_mm = 3.175 is no key .*did you mean gears.module_mm",
-        ),
-        (
-            "  module_mm: 3.175",
-            "  # module_mm: 3.175",
-            r"gears.module_mm or gears.diametral_pitch_per_inch is missing: m_d, module.* valid is a number",
-        ),
-        ("bore_radius_mm: 50", "bore_radius_mm:", r"body.bore_radius_mm is missing"),
-        ("bore_radius_mm: 50", "bore_radius_mm: 0.05", r"body.bore_radius_mm .*50 would be valid, in mm"),
-        (
             "bore_radius_mm: 50",
             "bore_radius_mm: 190",
             r"body.bore_radius_mm .* 11.5969 and 188.433 mm .*got 190 mm",
         ),
-        ("thickness_ratio: 0.03", "thickness_ratio: 30", r"body.thickness_ratio .*0.2.* got 30 .*0.03 would"),
-        (
-            "damping_us: 3",
-            "damping_us: 3e-6",
-            r"pinions.damping_us .*got 3e-06 µs .*: 3 would be valid, in µs",
-        ),
-        ("damping_us: 3", "damping_us: -3", r"pinions.damping_us .*got -3"),
-        ("damping_us: 3", "damping_us: '3'", r"pinions.damping_us must be 0, or a number from .*got '3'"),
-        ("mass: 1.0", "mass: .nan", r"pinions.mass must be finite, got nan"),
-        ("mass: 1.0", "mass: 1.0\n  mass: 2", r"line \d+: pinions.mass is given twice"),
-        ("mass: 1.0", "mass: [1.0]", r"pinions.mass must be 0, or a number .*got \[1.0\]"),
-        ("mass: 1.0", "mass: 1.0\n  angles_deg: 0", r"pinions.angles_deg must be a list .*got 0"),
-        (
-            "mass: 1.0",
-            "mass: 1.0\n  angles_deg: ['0', '90']",
-            r"^pinions.angles_deg\[0\] must be a number from -360 to 360 °, got '0'$",
-        ),
-        ("mass: 1.0", "mass: 1.0\n  angles_deg: [0, 400]", r"pinions.angles_deg\[1\] .*got 400 °"),
         (
             "mass: 1.0",
             "mass: 1.0\n  angles_deg: [5, -355]",
             r"pinions.angles_deg\[1\] must differ .*at least 26\.\d+°.*-355° beside 5°",
-        ),
-        (
-            "mass: 1.0",
-            "mass: 1.0\n  contact_ratio: 1.5",
-            r"pinions.contact_ratio must be usual or tregold or geometric or loaded or unloaded, got 1.5",
         ),
         (
             "mass: 1.0",
@@ -500,15 +165,6 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
             "gear_teeth: 130\n  shaper_teeth: 25",
             r"gears.shaper_teeth must be at least 26, got 25",
         ),
-        ("gear_teeth: 130", "gear_teeth: 130\n  shaper_teeth: false", r"gears.shaper_teeth must .*got False"),
-        ("gear_teeth: 130", "gear_teeth: 130\n  shaper_teeth: 1", r"gears.shaper_teeth must .*10, got 1"),
-        (
-            "pinion_teeth: 26",
-            "pinion_teeth: 26.0",
-            r"gears.pinion_teeth must be an integer of at least 10, got 26.0",
-        ),
-        ("pinion_teeth: 26", "pinion_teeth: true", r"gears.pinion_teeth must be an integer .*got True"),
-        ("pinion_teeth: 26", "pinion_teeth: 5", r"gears.pinion_teeth must be at least 10, got 5"),
         ("pinion_teeth: 26", "pinion_teeth: 11", r"gears.pinion_teeth=11 is too few.*take more teeth"),
         (
             "pinion_teeth: 26",
@@ -516,52 +172,11 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
             r"gears.gear_teeth must exceed gears.pinion_teeth=140, got 130",
         ),
         (
-            "module_mm: 3.175",
-            "module_mm: 3.175\n  pressure_angle_deg: 0.436",
-            r"gears.pressure_angle_deg .*14.5, 30.*got 0.436 ° .*24.98\d* would be valid",
-        ),
-        (
             "lowest_speed_rpm: 100",
             "lowest_speed_rpm: 10",
             r"operation.lowest_speed_rpm .*1/50 of it, got 10 rpm",
         ),
         ("lowest_speed_rpm: 100", "lowest_speed_rpm: 1000", r"operation.lowest_speed_rpm .*got 1000 rpm"),
-        ("gears:", "gear:", r"gear = .* is no key of a drive file: did you mean gears\?"),
-        (
-            "name: Case I",
-            "name: Case I\nthickness_ratio: 3",
-            r"thickness_ratio = 3 is no key .*belongs to body",
-        ),
-        ("name: Case I", "name: 3", r"name must be text of 1 to 80 characters, got 3"),
-        ("name: Case I", "name: '  '", r"name must be text of 1 to 80 characters, got '  '"),
-        ("name: Case I", f"name: {'x' * 81}", r"name must be text of 1 to 80 characters, got 'xxx"),
-        ("name: Case I", 'name: "\\ud800"', r"line 2: '\\ud800' holds half a character"),
-        (
-            "module_mm: 3.175",
-            "module_mm: 3.175\n  diametral_pitch_per_inch: 8",
-            r"gears.module_mm and gears.diametral_pitch_per_inch say the same: give one of them",
-        ),
-        (
-            "power_kW: 447.42",
-            "power_kW: 447.42\n  power_hp: 600",
-            r"operation.power_kW and operation.power_hp say the same",
-        ),
-        (
-            "power_kW: 447.42",
-            "power: 447.42",
-            r"operation.power = 447.42 is no key .*did you mean operation.power_",
-        ),
-        (
-            "  power_kW: 447.42 # 600 hp\n",
-            "",
-            r"operation.power_kW or operation.power_hp is missing: power of one",
-        ),
-        (
-            "module_mm: 3.175",
-            "diametral_pitch_per_inch: 800",
-            r"gears.diametral_pitch_per_inch must lie in \[0.3, 200\] in 1/in, got 800",
-        ),
-        # What is swapped, mistyped or meant otherwise is said where the other reading would do.
         (
             "pinion_teeth: 26\n  gear_teeth: 130",
             "pinion_teeth: 130\n  gear_teeth: 26",
@@ -582,15 +197,6 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
             "diametral_pitch_per_inch: 3.175\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 20",
             r"body.bore_radius_mm must lie .* \(is 3.175 1/in a module in mm\?\)",
         ),
-        ("thickness_ratio: 0.03", "thickness_ratio: 0,03", r"got '0,03' \(a point, not a comma: 0.03\)"),
-        (
-            "damping_us: 3",
-            "damping_us: 3 µs",
-            r"got '3 µs' \(the number alone, its unit is that of the key: 3\)",
-        ),
-        ("thickness_ratio: 0.03", "thickness_ratio: 6.9", r"thickness_ratio .*\(a ratio, not mm\?"),
-        ("stiffness: 1.0", "stiffness: 1e6", r"pinions.stiffness .*got 1000000.0 \(a ratio, not N/m\?"),
-        ("mass: 1.0", "mass: 3400", r"pinions.mass .*got 3400 \(a ratio, not kg\?"),
         (
             "highest_speed_rpm: 1000",
             "highest_speed_rpm: 41650",
@@ -601,67 +207,11 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
             "lowest_speed_rpm: 1000\n  highest_speed_rpm: 41650",
             r"operation.highest_speed_rpm must be at most 41589.6 rpm for this body.*got 41650 rpm",
         ),
-        (
-            "name: Case I",
-            "name: Case I\nmaterial: steel",
-            r"material must be a section with the keys density.*'steel'",
-        ),
-        ("name: Case I", "name: Case I\nmaterial:", r"material must be a section .*None"),
-        (
-            "name: Case I",
-            "name: Case I\nmaterial: {youngs_modulus_GPa: 2e11}",
-            r"material.youngs_modulus_GPa .*: 200 wo",
-        ),
-        ("name: Case I", "name: Case I\ngearbox: {}", r"gearbox.pinion_inertia_kg_m2 is missing"),
     ],
 )
-def test_a_mistake_ends_in_one_sentence_that_names_key_value_and_what_is_valid(old, new, message):
+def test_values_that_do_not_go_together_end_in_one_sentence_that_names_what_would(old, new, message):
     assert CASE_1.count(old) == 1
     assert re.search(message, refusal(CASE_1.replace(old, new)))
-
-
-class TestShaftsWithMass:
-    LENGTHS = "  input_length_mm: 300\n  output_length_mm: 250\n"
-
-    def test_lengths_give_shafts_their_mass(self):
-        found, massless = parse_drive(GEARBOX + self.LENGTHS), parse_drive(GEARBOX)
-        assert (found.torsional.input_length, found.torsional.output_length) == pytest.approx((0.3, 0.25))
-        assert found.torsional.torsional == massless.torsional
-        assert found.torsional.material == found.transverse.body.material
-        # The report reads stiffnesses off either.
-        assert found.torsional.gearbox == massless.torsional.gearbox
-        assert found.not_buildable == massless.not_buildable == ()
-
-    def test_one_shaft_may_be_massless(self):
-        found = parse_drive(GEARBOX + "  output_length_mm: 250\n").torsional
-        assert found.system(60.0).size == 5
-
-    def test_what_cannot_be_built_is_said(self):
-        (sentence,) = parse_drive(GEARBOX + self.LENGTHS.replace("300", "500")).not_buildable
-        assert sentence.startswith("input shaft of 98.4 mm diameter is thicker than the root circle")
-
-    def test_lengths_out_of_range_are_refused(self):
-        # 0.3 is a length in metres.
-        told = refusal(GEARBOX + self.LENGTHS.replace("300", "0.3"))
-        assert "gearbox.input_length_mm must lie in [1, 20000] in mm, got 0.3 mm" in told
-
-
-def test_mistakes_in_the_gearbox():
-    told = refusal(
-        GEARBOX.replace("mesh_stiffness_N_per_m: 157629095.3", "mesh_stiffness_N_per_m: 157629.0953")
-    )
-    assert re.search(r"gearbox.mesh_stiffness_N_per_m must lie in .*wrong by a factor of 1000", told)
-    assert "gearbox.arm must be printed or conjugate" in refusal(GEARBOX + "  arm: bent\n")
-
-
-@pytest.mark.parametrize("content", ["", "3", "- a\n- b", "name", b"\xff"])
-def test_what_is_no_mapping_is_refused(content):
-    assert re.search("must be a section|not text in UTF-8", refusal(content))
-
-
-def test_long_values_are_cut_in_messages():
-    assert len(refusal(CASE_1.replace("mass: 1.0", f"mass: {'x' * 5000}"))) < 250
-    assert len(refusal(CASE_1.replace("mass: 1.0", f"{'x' * 500}: 1.0"))) < 400
 
 
 def test_a_file_that_is_not_there(tmp_path, monkeypatch):
@@ -840,9 +390,3 @@ def test_a_body_too_soft_to_measure_bearings_by_is_refused():
     soft = yaml.safe_load(GEARBOX) | {"material": {"youngs_modulus_GPa": 0.11547819846894582}}
     with pytest.raises(DriveFileError, match="thickness_ratio must be larger, or the material stiffer"):
         parse_drive(yaml.safe_dump(soft))
-
-
-def test_of_a_body_too_soft_each_key_that_could_help_is_named():
-    told = refusal(yaml.safe_dump(yaml.safe_load(BOTH_FACES) | {"material": {"youngs_modulus_GPa": 1}}))
-    keys = ("body.thickness_ratio", "material.youngs_modulus_GPa", "material.density_kg_per_m3")
-    assert all(key in told for key in keys)

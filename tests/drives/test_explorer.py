@@ -10,13 +10,15 @@ import pytest
 from plotly.callbacks import InputDeviceState, Points
 
 from facegear.drives import cell_figure as cell
-from facegear.drives import explore, explorer, studies
+from facegear.drives import explore, explorer
 from facegear.drives.cell import cell_detail
+from facegear.drives.studies.gearbox import gearbox_study
+from facegear.drives.studies.oscillator import SQUARE, oscillator_study
 from facegear.mechanics import cases
 from facegear.mechanics.classical import Mathieu
 from facegear.support.parameters import rad_per_s
 
-STUDY = replace(studies.oscillator_study(), columns=12, rows=8)
+STUDY = replace(oscillator_study(), columns=12, rows=8)
 NO_KEYS = InputDeviceState()
 
 
@@ -66,7 +68,7 @@ def test_the_vertical_axis_can_be_exchanged_and_switches_its_control_off(widget)
 
 def test_controls_that_do_not_matter_are_switched_off(widget):
     assert widget.controls["duty"].disabled
-    widget.controls["wave"].value = studies.SQUARE
+    widget.controls["wave"].value = SQUARE
     assert not widget.controls["duty"].disabled
 
 
@@ -180,7 +182,7 @@ def test_cell_of_a_disk_has_its_deflection_drawn():
 
 
 def test_cell_of_a_gearbox_names_its_coordinates():
-    study = studies.gearbox_study()
+    study = gearbox_study()
     detail = cell_detail(study.model(study.settings()), float(rad_per_s(640.0)))
     figure = cell.cell_figure(detail)
     figure.canvas.draw()

@@ -4,11 +4,13 @@ import ast
 
 import pytest
 
-from facegear.drives import explorer, live, studies
+from facegear.drives import explorer, live
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
 from facegear.drives.examples import example_names, example_text
 from facegear.drives.explore import shown_only
 from facegear.drives.file_study import file_study, study_of
+from facegear.drives.studies.drive import drive_study
+from facegear.drives.studies.oscillator import oscillator_study
 from facegear.drives.verdict import driven
 
 examples = pytest.mark.parametrize("name", example_names())
@@ -70,9 +72,7 @@ class TestSaving:
     def widget(self, tmp_path):
         from dataclasses import replace
 
-        study = replace(
-            shown_only(studies.drive_study(), ["stiffness", "power", "module"]), columns=3, rows=3
-        )
+        study = replace(shown_only(drive_study(), ["stiffness", "power", "module"]), columns=3, rows=3)
         return explorer.MapExplorer(study, tmp_path)
 
     def test_the_drive_as_it_stands(self, widget, tmp_path):
@@ -106,7 +106,7 @@ class TestSaving:
         assert not list(tmp_path.iterdir())
 
     def test_what_is_no_drive_has_no_button(self):
-        study = studies.oscillator_study()
+        study = oscillator_study()
         widget = explorer.MapExplorer(study)
         assert widget.save not in widget.widget.children[0].children
         with pytest.raises(ValueError, match="settings must be those of a drive"):

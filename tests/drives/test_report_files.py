@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from facegear.drives import findings, report, report_files, sections, verdict
+from facegear.drives import critical_thickness, findings, report_files, sections, verdict
 from facegear.drives.drive_file import parse_drive
 from facegear.drives.examples import example_text
 from facegear.drives.findings import Findings
@@ -33,7 +33,7 @@ def results(file, tmp_path_factory):
         raise ArithmeticError("the search lost its way")
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(report, "thickness_verdicts", fails)
+        patch.setattr(critical_thickness, "thickness_verdicts", fails)
         page = report_files.write_report(Findings(file, cells=3, most_steps=1, jobs=1), folder, told.append)
     return page, told
 

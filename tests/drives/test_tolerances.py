@@ -1,19 +1,30 @@
 """Tolerances of a drive: factors on the right parameters, borders against values drawn at random."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
 from facegear.drives.intervals import united
-from facegear.drives.tolerances import Toleranced, Tolerances, worst_case
+from facegear.drives.tolerances import (
+    Toleranced,
+    TolerancedGearbox,
+    Tolerances,
+    worst_case,
+    worst_case_in_torsion,
+)
 from facegear.drives.verdict import driven
 from facegear.maps.tracing import tongues
+from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.support.parameters import rad_per_s
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml")
+GEARBOX = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
+SHAFTS = ("input", "output")
 BOTH = read_drive_file(DRIVES / "both_faces.yaml")
 TREGOLD = driven(CASE_1, "dead", CASE_1.contacts["Tregold"])
 SWEEP = driven(CASE_1, "dead", CASE_1.contacts["true sweep"])
@@ -107,3 +118,68 @@ def test_a_speed_beyond_what_the_rim_bears_is_refused():
     )
     with limit:
         parse_drive(f"{text}\ntolerances:\n  speed_percent: 50\n")
+
+
+def test_more_stiffness_of_shafts_leaves_their_damping_and_the_mesh_as_they_are():
+    own = GEARBOX.torsional
+    one = own.system(60.0)
+    stiff = TolerancedGearbox(own, shaft_stiffness_factor=1.2).system(60.0)
+    damped = TolerancedGearbox(own, shaft_damping_factor=1.5).system(60.0)
+    teeth = TolerancedGearbox(own, mesh_stiffness_factor=0.8, mesh_damping_factor=1.1).system(60.0)
+    # Outside the mesh's loads both matrices are those of the shafts alone (7-12, 7-13).
+    assert_allclose(stiff.stiffness, 1.2 * one.stiffness, rtol=1e-14)
+    assert_allclose(stiff.damping, one.damping, rtol=1e-14)
+    assert_allclose(damped.stiffness, one.stiffness, rtol=1e-14)
+    assert_allclose(damped.damping, 1.5 * one.damping, rtol=1e-14)
+    for load, of_stiff, of_teeth in zip(one.loads, stiff.loads, teeth.loads, strict=True):
+        assert (of_stiff.stiffness, of_stiff.damping) == (load.stiffness, load.damping)
+        assert (of_teeth.stiffness, of_teeth.damping) == pytest.approx(
+            (0.8 * load.stiffness, 1.1 * load.damping), rel=1e-14
+        )
+
+
+def test_a_stiffer_shaft_of_the_same_length_is_heavier_in_proportion():
+    heavy = HeavyShafts(GEARBOX.torsional, input_length=0.1, output_length=0.2)
+    stiffer = TolerancedGearbox(heavy, shaft_stiffness_factor=1.3)
+    bodies = np.diag([*np.diag(GEARBOX.torsional.system(60.0).mass), 0.0, 0.0, 0.0, 0.0])
+    own, changed = (model.system(60.0).mass - bodies for model in (heavy, stiffer))
+    assert_allclose(changed, 1.3 * own, rtol=1e-9, atol=1e-12 * np.abs(own).max())
+    assert [c.name for c in stiffer.coordinates] == [c.name for c in heavy.coordinates]
+
+
+def test_shafts_drawn_at_random_are_unstable_only_where_borders_say():
+    """The largest tongue of Fig. 7.12(a), within ten per cent of the shafts' stiffness and thirty of their damping."""
+    tolerances = Tolerances(stiffness=0.05, shaft_stiffness=0.1, shaft_damping=0.3)
+    speeds = (float(rad_per_s(560.0)), float(rad_per_s(760.0)))
+    found = worst_case_in_torsion(GEARBOX.torsional, speeds, tolerances)
+    assert found.factors == ("mesh stiffness", "mesh damping", "shaft stiffness", "shaft damping")
+    assert len(found.corners) == 9
+    own = sum(tongue.width for tongue in tongues(GEARBOX.torsional, speeds)) / (speeds[1] - speeds[0])
+    assert found.share > 1.05 * own > 0.0
+    drawn = np.random.default_rng(5).uniform([0.95, 0.9, 0.7], [1.05, 1.1, 1.3], (6, 3))
+    for mesh, stiffness, damping in drawn.tolist():
+        box = GEARBOX.torsional.gearbox
+        other = replace(
+            box,
+            mesh_stiffness=mesh * box.mesh_stiffness,
+            **{f"{shaft}_stiffness": stiffness * getattr(box, f"{shaft}_stiffness") for shaft in SHAFTS},
+            **{f"{shaft}_damping": damping * getattr(box, f"{shaft}_damping") for shaft in SHAFTS},
+        )
+        for tongue in tongues(replace(GEARBOX.torsional, gearbox=other), speeds):
+            assert any(
+                low - 1e-9 <= tongue.lower and tongue.upper <= high + 1e-9 for low, high in found.swept
+            )
+
+
+def test_a_file_gives_tolerances_of_shafts_where_it_has_some():
+    text = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+    given = "\ntolerances:\n  shaft_stiffness_percent: 10\n  shaft_damping_percent: 20\n"
+    found = parse_drive(text + given).tolerances
+    assert found == Tolerances(shaft_stiffness=0.1, shaft_damping=0.2)
+    assert (found.given, found.given_in_torsion) == (False, True)
+    without = (DRIVES / "case_1.yaml").read_text(encoding="utf-8")
+    with pytest.raises(
+        DriveFileError,
+        match=r"^[^:]*: tolerances.shaft_stiffness_percent must be 0 or left out without a section gearbox.*got 10$",
+    ):
+        parse_drive(without + given)

@@ -8,7 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, SkewLine, mesh_period
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.skew_line import SkewLine
+from facegear.geometry.timed_pairs import mesh_period
 from tests.independent import meshing_mpmath
 from tests.independent.shaper_envelope import shaper_of
 
@@ -275,34 +277,6 @@ def test_overlaid_pairs_lag_by_one_pitch():
     number = states.in_contact[:, 80:120].sum(axis=0)
     assert set(number) == {1, 2}
     assert np.mean(number == 2) == pytest.approx(0.5532, abs=0.03)
-
-
-def test_skew_line_is_3_22():
-    line = SkewLine(CASE_I)
-    r1, r2, cr = CASE_I.inner_radius, CASE_I.outer_radius, CASE_I.contact_ratio
-    assert line.breakpoints == (0.0, pytest.approx(cr - 1.0, abs=1e-15))
-    assert line.slope == pytest.approx((r1 - r2) / cr, rel=1e-14)
-    for x in (0.0, 0.2, 0.5, 0.6, 0.99, -0.4, 5.5):
-        states = line.pair_states(x)
-        start = x - math.floor(x)
-        for j, age in enumerate((start, start + 1.0)):
-            assert states.in_contact[j] == (age <= cr)
-            expected = r2 - (r2 - r1) * age / cr if age <= cr else 0.0
-            assert states.radius[j] == pytest.approx(expected, rel=1e-13)
-    ends = [line.pair_states_on_piece(i, np.array([-1.0, 1.0])) for i in (0, 1)]
-    assert ends[0].radius[0, 0] == pytest.approx(r2, rel=1e-14)
-    assert ends[0].radius[1, 1] == pytest.approx(r1, rel=1e-12)
-    # The pair that left is gone on the closed next piece, its first instant included.
-    assert not ends[1].in_contact[1].any()
-
-
-def test_mesh_period_is_3_20():
-    assert mesh_period(CASE_I, 100.0) == pytest.approx(2 * math.pi / 13000.0, rel=1e-15)
-    for speed in (0, -1.0, math.nan, math.inf):
-        with pytest.raises(ValueError, match="speed must be"):
-            mesh_period(CASE_I, speed)
-    with pytest.raises(TypeError, match="speed must be a real number"):
-        mesh_period(CASE_I, "1000 rpm")
 
 
 PATHS = {

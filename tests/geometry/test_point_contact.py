@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import quad
 from scipy.optimize import root
 
 from facegear.geometry import solids
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath
-from facegear.geometry.point_contact import Misalignment, PointPath, UnloadedContact
+from facegear.geometry.misalignment import Misalignment
+from facegear.geometry.point_contact import UnloadedContact
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.paths import point_contact
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad
@@ -199,47 +198,17 @@ def test_curvatures_of_the_gap(drive, seed):
     """
     contact = UnloadedContact(drive, random_error(np.random.default_rng(seed)))
     roll, u = float(contact.rolls.mean()), contact.position
-    tensor = contact._curvature_tensor(roll)
+    tensor = contact.lines.curvature_tensor(contact.pressure_angle, roll)
     h = 2e-4
     gap = contact.gap(u + h * np.array([-2.0, -1.0, 0.0, 1.0, 2.0]))
     second = float(gap @ [-1.0, 16.0, -30.0, 16.0, -1.0]) / (12.0 * h**2)
-    own = 1.0 / (float(contact._line(contact.pressure_angle)[2]) + drive.generating.base_radius * roll)
+    own = 1.0 / (float(contact.lines.at(contact.pressure_angle)[2]) + drive.generating.base_radius * roll)
     gear = tensor - np.diag([own, 0.0])
     slope = -np.linalg.det(gear) / gear[0, 1]
     assert -slope * (-gear[1, 1] / gear[0, 1] + slope / own) == pytest.approx(second, rel=3e-4)
     smaller, larger = contact.principal_curvatures
     assert smaller * larger == pytest.approx(np.linalg.det(tensor), rel=1e-10)
     assert 0.0 < smaller < larger
-
-
-def test_hertz_against_the_integrals_of_its_theory():
-    """Deflection under the pressure of the ellipse at the middle and along both axes makes up the gap."""
-    contact = UnloadedContact(CASE_ONE)
-    force, modulus = 500.0, 1.1e11
-    found = contact.hertz(force, modulus)
-    a, b = found.long, found.short
-
-    def deflection(x, y):
-        def part(w):
-            w = w**2 * b**2  # the root at 0 is taken out
-            rest = 1.0 - x**2 / (a**2 + w) - y**2 / (b**2 + w)
-            return 2.0 * b * rest / math.sqrt((a**2 + w) * (b**2 + w))
-
-        return (
-            found.pressure
-            * a
-            * b
-            / (2.0 * modulus)
-            * quad(part, 0.0, math.inf, epsabs=0.0, epsrel=1e-11, limit=500)[0]
-        )
-
-    smaller, larger = contact.principal_curvatures
-    assert deflection(0.0, 0.0) == pytest.approx(found.approach, rel=1e-8)
-    assert deflection(0.7 * a, 0.0) == pytest.approx(
-        found.approach - smaller * (0.7 * a) ** 2 / 2.0, rel=1e-6
-    )
-    assert deflection(0.0, 0.7 * b) == pytest.approx(found.approach - larger * (0.7 * b) ** 2 / 2.0, rel=1e-6)
-    assert found.pressure == pytest.approx(1.5 * force / (math.pi * a * b))
 
 
 def test_marking_band_ends_where_the_gap_is_that_deep():
@@ -279,29 +248,6 @@ def test_nested_base_circles_do_not_meet():
     limit = -CASE_ONE.axis_offset * (1.0 - math.cos(CASE_ONE.pressure_angle))
     with pytest.raises(ValueError, match="do not meet"):
         UnloadedContact(CASE_ONE, Misalignment(gear_axial=limit - 1e-6))
-
-
-def test_path_on_its_own_clock():
-    """Each pair runs along the line of action at one u, from the gear's tooth top to the pinion's tip."""
-    contact = UnloadedContact(CASE_ONE)
-    path = PointPath(CASE_ONE, contact.contact_ratio)
-    x = np.linspace(0.0, 0.999, 7)
-    states = path.pair_states(x)
-    assert states.in_contact.sum() == sum(1 + (value < contact.contact_ratio - 1.0) for value in x)
-    there = states.in_contact[0]
-    # At 90° the radius is that of u and of x_m = r_bs (sin q − θs cos q) beside it.
-    roll = np.interp(x, [0.0, contact.contact_ratio], contact.rolls)
-    q, base = contact.pressure_angle, CASE_ONE.generating.base_radius
-    beside = base * (np.sin(q) - roll * np.cos(q))
-    np.testing.assert_allclose(states.radius[0], np.hypot(contact.position, beside)[there], rtol=1e-12)
-    np.testing.assert_allclose(states.angle[0], np.arctan2(beside, contact.position)[there], atol=1e-12)
-    # The line of action is swept with the base circle's speed.
-    (place, _) = Contact(path=PointPath, sharing="each", contact_ratio=contact.contact_ratio).places(CASE_ONE)
-    np.testing.assert_allclose(place.position(x)[:, 1], states.angle[0], atol=1e-11)
-    with pytest.raises(ValueError, match='sharing must be "mean" or "each" for PointPath'):
-        Contact(path=PointPath).require(CASE_ONE)
-    with pytest.raises(ValueError, match="shaper_teeth must exceed"):
-        PointPath(Drive(26, 130, 3.175e-3))
 
 
 # --- the drive of a larger shaper -----------------------------------------------------------------------------------
@@ -452,12 +398,3 @@ def test_ends_of_the_face_in_the_coordinate_of_the_shapers_axis(angle):
             ValueError, match="the coordinates u along the shaper's axis where the flank has points"
         ):
             contact.gap(beyond)
-
-
-def test_the_contact_of_a_drive_is_found_once_for_its_paths(monkeypatch):
-    found, fault = [], UnloadedContact._fault
-    monkeypatch.setattr(UnloadedContact, "_fault", lambda contact: found.append(contact) or fault(contact))
-    drive = replace(CASE_ONE, module=3.3e-3)
-    for path in (point_contact(drive), PointPath(drive, 1.5)):
-        path.pair_states(0.25)
-    assert len(found) == 1

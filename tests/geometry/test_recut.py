@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from facegear import Drive
-from facegear.geometry.drive import SHAPER_OVERHANG
 from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.proportions import SHAPER_OVERHANG
 from facegear.mechanics.contact import Contact
 from tests.independent.shaper_envelope import shaper_of
 
@@ -143,8 +143,8 @@ def test_contact_ends_where_the_shaper_leaves_nothing(drive):
 def test_ends_followed_from_neighbours_are_those_found_by_search(drive):
     region = drive.contact_region
     c = np.linspace(region.exit, region.entry, 41)[1:-1]
-    lower, upper = region._generated_ends(c)
-    found = np.maximum(lower, region._uncut(lower, upper, c))
+    lower, upper = region.generated_ends(c)
+    found = np.maximum(lower, region.cut.uncut(lower, upper, c))
     np.testing.assert_allclose(region.line_ends(c)[0], found, rtol=0, atol=2e-12)
 
 
@@ -152,7 +152,7 @@ def test_what_the_issue_measured():
     """Lines on removed flank were counted: 3.23 mesh periods for 2.70."""
     drive = NAMED[3]
     region = drive.contact_region
-    generated = (region.entry - region._generated_exit) * drive.pinion_teeth / (2 * math.pi)
+    generated = (region.entry - region.generated_exit) * drive.pinion_teeth / (2 * math.pi)
     assert generated == pytest.approx(3.2306, abs=1e-4)
     assert drive.geometric_contact_ratio == pytest.approx(2.7038, abs=1e-4)
     # A longer shaper cuts more; the length that is meant is part of the drive's conventions.
@@ -187,7 +187,7 @@ def test_up_to_a_right_angle_lines_are_as_generated():
     for teeth, shaft_deg, most in (((26, 30), 90.0, 1.5e-6), ((26, 52), 90.0, 0.0), ((26, 30), 80.0, 0.0)):
         drive = drive_of(teeth, 25.0, shaft_deg)
         assert drive.tip_undercut(41, 16).max() <= most
-        assert drive.contact_region.exit == drive.contact_region._generated_exit
+        assert drive.contact_region.exit == drive.contact_region.generated_exit
     assert drive_of((26, 30), 25.0, 90.0).tip_undercut(41, 16).max() > 0.5e-6
 
 
@@ -203,7 +203,7 @@ def test_roll_off_the_profile_is_refused():
 def test_a_part_of_the_shaper_that_cuts_few_lines_is_seen(teeth, degrees):
     """It takes over from another one right after the cut begins, between two of the lines that are looked at."""
     drive = Drive(*teeth, 4e-3, shaft_angle=math.radians(degrees))
-    (corner,) = drive.contact_region._cut_corners
+    (corner,) = drive.contact_region.cut.corners
     assert any(abs(corner - kink) < 1e-12 for kink in drive.contact_region.kinks)
     # A missed corner is a kink inside a piece, which no series follows.
     [place] = Contact().places(drive)

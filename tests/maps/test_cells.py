@@ -10,6 +10,7 @@ from facegear.floquet.multipliers import AdaptiveMagnus, growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps import cells as module
+from facegear.maps import stability_map as engine
 from facegear.maps.cells import cells_of
 from facegear.maps.stability_map import stability_map
 from facegear.mechanics.classical import Mathieu
@@ -94,6 +95,35 @@ def taken(model):
     return cells_of(
         [replace_parameter(model, "depth", x) for x in (0.1, 0.2, 0.3)], (0, 1, 2), np.arange(1.0, 4.0)
     )
+
+
+def counted_rows(monkeypatch):
+    """Numbers of values that go by rows, as they are asked for."""
+    asked, by_row = [], engine._by_row
+    monkeypatch.setattr(
+        engine, "_by_row", lambda sweep, *rest: asked.append(len(sweep.values)) or by_row(sweep, *rest)
+    )
+    return asked
+
+
+def test_a_mass_that_changes_leaves_each_row_in_lockstep(monkeypatch):
+    asked, model = counted_rows(monkeypatch), GEARBOX.model()
+    speeds = rad_per_s(np.linspace(GEARBOX.lowest_rpm, 1000.0, 12))
+    inertias = model.gearbox.load_inertia * np.linspace(0.5, 4.0, 11)
+    chart = stability_map(model, speeds, "load_inertia", inertias, jobs=1, progress=False)
+    assert not asked
+    assert chart.attrs["error_estimate"] < 1e-9
+    check(model, chart, "load_inertia", 5)
+
+
+def test_values_that_ask_for_too_many_steps_go_by_rows_and_no_others(monkeypatch):
+    asked, model = counted_rows(monkeypatch), GEARBOX.model()
+    speeds = rad_per_s(np.linspace(GEARBOX.lowest_rpm, 1000.0, 6))
+    stiffness = model.gearbox.input_stiffness * np.geomspace(1.0, 1e5, 11)
+    chart = stability_map(model, speeds, "input_stiffness", stiffness, jobs=1, progress=False)
+    assert len(asked) == 1
+    assert 0 < asked[0] < 6
+    check(model, chart, "input_stiffness", 5)
 
 
 def test_what_speed_changes_besides_the_period_is_not_taken_for_nothing():

@@ -6,7 +6,7 @@ import joblib
 import numpy as np
 import pytest
 
-from facegear.drives import studies
+from facegear.drives.studies.gearbox import gearbox_study
 from facegear.floquet.models import Coordinate, Excited, WithoutRigidMotion, replace_parameter
 from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
@@ -104,6 +104,40 @@ def test_an_oscillator_over_speed_against_its_closed_form():
     np.testing.assert_allclose(found.peak_speed, [0.5, 1.0], atol=0.01)
 
 
+def test_forces_of_loads_together_are_those_of_one_as_strong():
+    """Springs of 0.3 and 0.1 side by side are one of 0.4; what is alone is as it was."""
+
+    @dataclass(frozen=True)
+    class Springs:
+        parts: tuple[float, ...]
+        coordinates = (Coordinate("mass", "m"),)
+
+        def system(self, speed):
+            loads = tuple(ContactLoad(ONE, part, 0.2 * part) for part in self.parts)
+            return PeriodicSystem([[1.0]], [[0.05]], [[0.6]], loads, 2.0 * np.pi / speed, force=WAVE)
+
+    one = frequency_response(Springs((0.4, 0.2)), SPEEDS, jobs=1)
+    found = frequency_response(Springs((0.3, 0.2, 0.1)), SPEEDS, together=[(0, 2), (1,)], jobs=1)
+    for name in ("force_mean", "force_rms", "force_lowest", "force_highest"):
+        np.testing.assert_allclose(found[name], one[name], rtol=1e-9, atol=1e-12, err_msg=name)
+    assert found.peak_label.values.tolist() == one.peak_label.values.tolist() == ["1/2"] * 2 + ["1/1"] * 2
+    for load in (0, 1):
+        peaks = (part.peak_force_highest[part.peak_load == load] for part in (found, one))
+        np.testing.assert_allclose(*peaks, rtol=1e-9)
+    assert "displacement_rms" in one
+    assert "displacement_rms" not in found
+
+
+def test_the_ends_of_the_force_at_a_peak_are_those_of_its_closed_form():
+    found = frequency_response(Narrow(1e-2, 1.0, WAVE), np.linspace(0.35, 1.63, 9), jobs=1)
+    for place, speed in enumerate(found.peak_speed.values.tolist()):
+        w = speed * np.array([1.0, 2.0])
+        amplitudes = np.array([1.0, 0.3]) / (1.0 - w**2 + 1e-2j * w)
+        motion = (np.exp(2j * np.pi * np.outer(np.linspace(0.0, 1.0, 20_001), [1, 2])) @ amplitudes).real
+        ends = (found.peak_force_lowest.values[place], found.peak_force_highest.values[place])
+        np.testing.assert_allclose(ends, (motion.min(), motion.max()), rtol=1e-5)
+
+
 @pytest.mark.parametrize("damping", [1e-1, 1e-3, 1e-5])
 def test_peaks_between_the_speeds_are_found_to_a_millionth(damping):
     """Of two harmonics, height 1/(√2 c ω) each but for c²; the ends of the range are none."""
@@ -159,7 +193,7 @@ def test_nothing_known_at_any_speed_is_said_and_why():
 
 @pytest.fixture(scope="module")
 def gearbox():
-    study = studies.gearbox_study()
+    study = gearbox_study()
     model = study.model(study.settings({}))
     return Excited(model, force=PiecewiseChebyshev.constant([0.0, 0.0, -800.0]))
 
@@ -258,6 +292,11 @@ def test_maps_are_made_of_responses(gearbox, tmp_path):
             lambda: response_map(Shifting(), SPEEDS[:3], "loads", [1, 2], jobs=1),
             ValueError,
             "as many loads at all speeds and values, 1 as at the first; got 2",
+        ),
+        (
+            lambda: frequency_response(MODEL, SPEEDS, together=[(0, 1)], jobs=1),
+            ValueError,
+            r"together must list numbers of loads, 0 to 0, in one group or more, got \[\(0, 1\)\]",
         ),
         (
             lambda: Excited(Mathieu(0.1), transmission_error=PiecewiseChebyshev.constant([0.0, 1.0])),

@@ -21,7 +21,8 @@ from facegear.maps.sensitivity import (
     system_derivative,
 )
 from facegear.maps.tracing import tongues
-from facegear.mechanics.classical import CoupledPair, Mathieu, Meissner
+from facegear.mechanics.classical import Mathieu, Meissner
+from facegear.mechanics.classical_pairs import CoupledPair
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.plate import Body

@@ -23,7 +23,7 @@ from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import borders
 from facegear.mechanics import cases
 from facegear.mechanics.cases import FIGURES
-from facegear.mechanics.classical import GearPair
+from facegear.mechanics.classical_pairs import GearPair
 from facegear.mechanics.plate import Body
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import MeshLoad, rad_per_s

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from facegear.floquet import multipliers as floquet
 from facegear.floquet.piecewise import PiecewiseChebyshev
-from facegear.mechanics import classical
+from facegear.mechanics import classical, classical_pairs
 from tests.independent import classical as independent
 from tests.resonance_systems import CHECK
 
@@ -25,19 +25,19 @@ def deviation(system, written_out):
         (classical.Mathieu(0.4, 0.03).system(1.7), independent.mathieu(1.7, 0.4, 0.03)),
         (classical.Meissner(0.6, 0.3, 0.02).system(0.9), independent.meissner(0.9, 0.6, 0.3, 0.02)),
         (
-            classical.CoupledPair(0.5, coupling=0.8, damping=0.02).system(1.3),
+            classical_pairs.CoupledPair(0.5, coupling=0.8, damping=0.02).system(1.3),
             independent.coupled_pair(1.3, 0.5, 0.8, 0.0, 0.02),
         ),
         (
-            classical.CoupledPair(0.5, circulation=0.8, damping=0.02).system(0.7),
+            classical_pairs.CoupledPair(0.5, circulation=0.8, damping=0.02).system(0.7),
             independent.coupled_pair(0.7, 0.5, 0.0, 0.8, 0.02),
         ),
         (
-            classical.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1),
+            classical_pairs.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1),
             independent.gear_pair(1.1, 1.563, 0.4, 0.02),
         ),
         (
-            classical.GearPair(2.4, droop=1.0, shaft_damping=0.02).system(1.1),
+            classical_pairs.GearPair(2.4, droop=1.0, shaft_damping=0.02).system(1.1),
             independent.gear_pair(1.1, 2.4, 1.0, 0.02),
         ),
     ],
@@ -76,32 +76,6 @@ def test_meissner_trace_stays_finite_where_the_soft_part_has_no_stiffness():
     assert values[1] == pytest.approx(values[2], abs=1e-10)
 
 
-@pytest.mark.parametrize(("contact_ratio", "pieces"), [(1.0, 1), (1.6, 2), (2.0, 1), (3.286, 2)])
-@pytest.mark.parametrize("droop", [0.0, 0.4, 1.0])
-def test_tooth_pairs_in_mesh(contact_ratio, pieces, droop):
-    wave = classical.tooth_pair_wave(contact_ratio, droop)
-    assert wave.breakpoints.size == pieces
-    assert np.abs(wave.jumps()).max() == pytest.approx(
-        0.0 if droop == 1.0 or pieces == 1 else 1.0 - droop, abs=1e-9
-    )
-    middles = (np.arange(2000) + 0.5) / 2000
-    assert wave(middles).mean() == pytest.approx(contact_ratio * (1.0 - droop / 3.0), abs=1e-3)
-
-
-def test_symmetric_coupling_has_the_sum_and_circulation_the_difference():
-    damping = 0.02
-    first, second = (math.sqrt(s) for s in np.linalg.eigvalsh([[1.0, 0.8], [0.8, 3.5]]))
-    spring = classical.CoupledPair(0.6, coupling=0.8, damping=damping).system(first + second)
-    assert floquet.growth_rate(spring) > 1e-3
-    spring = classical.CoupledPair(0.3, coupling=0.8, damping=damping).system(second - first)
-    assert floquet.growth_rate(spring) < -1e-3
-    first, second = (math.sqrt(s) for s in sorted(np.linalg.eigvals([[1.0, -0.8], [0.8, 3.5]]).real))
-    crossed = classical.CoupledPair(0.3, circulation=0.8, damping=damping).system(second - first)
-    assert floquet.growth_rate(crossed) > 1e-3
-    crossed = classical.CoupledPair(0.3, circulation=0.8, damping=damping).system(first + second)
-    assert floquet.growth_rate(crossed) < -1e-3
-
-
 @pytest.mark.parametrize(
     ("build", "name"),
     [
@@ -115,22 +89,25 @@ def test_symmetric_coupling_has_the_sum_and_circulation_the_difference():
             lambda: classical.Hill(0.1, PiecewiseChebyshev.constant([1.0, 2.0])),
             "wave must have one component",
         ),
-        (lambda: classical.CoupledPair(0.1, circulation=1.3), "circulation"),
-        (lambda: classical.CoupledPair(0.1, coupling=2.0), "coupling"),
-        (lambda: classical.CoupledPair(0.1, stiffnesses=(1.0, 0.0)), r"stiffnesses\[1\]"),
+        (lambda: classical_pairs.CoupledPair(0.1, circulation=1.3), "circulation"),
+        (lambda: classical_pairs.CoupledPair(0.1, coupling=2.0), "coupling"),
+        (lambda: classical_pairs.CoupledPair(0.1, stiffnesses=(1.0, 0.0)), r"stiffnesses\[1\]"),
         (
-            lambda: classical.CoupledPair(0.1, stiffnesses=(1,)),
+            lambda: classical_pairs.CoupledPair(0.1, stiffnesses=(1,)),
             r"stiffnesses must be two numbers .* got \(1,\)",
         ),
-        (lambda: classical.CoupledPair(0.1, stiffnesses=(1, 2, 3)), "stiffnesses must be two numbers"),
-        (lambda: classical.CoupledPair(0.1, stiffnesses=2.0), "stiffnesses must be two numbers .* got 2.0"),
-        (lambda: classical.GearPair(1.5, masses=None), "masses must be two numbers"),
-        (lambda: classical.CoupledPair(0.1, damping=-0.1), "damping"),
-        (lambda: classical.GearPair(0.9), "contact_ratio"),
-        (lambda: classical.GearPair(1.5, droop=1.2), "droop"),
-        (lambda: classical.GearPair(1.5, pair_stiffness=-1.0), "pair_stiffness"),
-        (lambda: classical.GearPair(1.5, masses=(1.0, -1.0)), r"masses\[1\]"),
-        (lambda: classical.GearPair(1.5).system(-1.0), "mesh_frequency"),
+        (lambda: classical_pairs.CoupledPair(0.1, stiffnesses=(1, 2, 3)), "stiffnesses must be two numbers"),
+        (
+            lambda: classical_pairs.CoupledPair(0.1, stiffnesses=2.0),
+            "stiffnesses must be two numbers .* got 2.0",
+        ),
+        (lambda: classical_pairs.GearPair(1.5, masses=None), "masses must be two numbers"),
+        (lambda: classical_pairs.CoupledPair(0.1, damping=-0.1), "damping"),
+        (lambda: classical_pairs.GearPair(0.9), "contact_ratio"),
+        (lambda: classical_pairs.GearPair(1.5, droop=1.2), "droop"),
+        (lambda: classical_pairs.GearPair(1.5, pair_stiffness=-1.0), "pair_stiffness"),
+        (lambda: classical_pairs.GearPair(1.5, masses=(1.0, -1.0)), r"masses\[1\]"),
+        (lambda: classical_pairs.GearPair(1.5).system(-1.0), "mesh_frequency"),
     ],
 )
 def test_bad_input_is_one_clear_error(build, name):

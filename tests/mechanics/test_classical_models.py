@@ -12,7 +12,8 @@ from facegear.drives.cell import cell_detail
 from facegear.floquet.labels import combination
 from facegear.floquet.models import parameter_names
 from facegear.maps.sensitivity import sensitivity
-from facegear.mechanics.classical import CoupledPair, GearPair, Hill, Mathieu, Meissner, cosine_wave
+from facegear.mechanics.classical import Hill, Mathieu, Meissner, cosine_wave
+from facegear.mechanics.classical_pairs import CoupledPair, GearPair
 from tests.independent import classical as independent
 
 

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import CentroidPath, ContactPath, SkewLine
+from facegear.geometry.kinematics import CentroidPath, ContactPath
+from facegear.geometry.skew_line import SkewLine
 from facegear.mechanics.contact import CENTROID, SKEW_LINE, Contact
 
 DRIVE = Drive(26, 130, 3.175e-3)

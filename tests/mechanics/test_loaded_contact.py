@@ -10,7 +10,8 @@ import pytest
 from scipy.integrate import quad
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.point_contact import Misalignment, UnloadedContact
+from facegear.geometry.misalignment import Misalignment
+from facegear.geometry.point_contact import UnloadedContact
 from facegear.mechanics.compliance import Lines
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.slices import Slices
@@ -74,8 +75,8 @@ def test_lines_lie_on_both_flanks_and_end_at_an_edge(drive, kinks):
         roll = slices.roll(q, slices.limits[0] - age * slices.pitch)
         parts = [
             roll,
-            slices.contact.own_roll(q, roll),
-            drive.pinion_tip_roll - slices.contact.own_roll(q, roll),
+            slices.contact.lines.own_roll(q, roll),
+            drive.pinion_tip_roll - slices.contact.lines.own_roll(q, roll),
             shaper.shaper_tip_roll - roll,
             (region.depth(q, roll) - shaper.tooth_top_distance) / drive.module,
             (region.radial_position(q, roll) - shaper.flank_start) / drive.module,

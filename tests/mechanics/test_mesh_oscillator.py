@@ -16,7 +16,8 @@ import facegear as fg
 from facegear.floquet.hsu import band_speeds
 from facegear.floquet.models import parameter_names, replace_parameter
 from facegear.floquet.multipliers import growth_rate, multipliers
-from facegear.geometry.kinematics import ContactPath, mesh_period
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.disk import disk_matrices, disk_modes, modal_mass
 from facegear.mechanics.mesh_oscillator import FOLLOWED, MeshOscillator
 from facegear.mechanics.sharing import RULES, shared_load

@@ -10,11 +10,13 @@ from facegear.design.envelope import disk_growth_rate
 from facegear.floquet.modes import natural_exponents
 from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
-from facegear.geometry.kinematics import ContactPath, mesh_period
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_matrices, mirror_signs
 from facegear.mechanics.mesh_oscillator import FOLLOWED, MeshOscillator
-from facegear.mechanics.spread_force import ContactPoints, FaceStrip, PressedPoints, Spread, ToothPatches
+from facegear.mechanics.pressed_points import PressedPoints, Spread
+from facegear.mechanics.spreads import ContactPoints, FaceStrip, ToothPatches
 from facegear.mechanics.torsional import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
 from tests.independent.complex_galerkin import ComplexDisk, Pinion, Spring

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from facegear.floquet.multipliers import growth_rate
-from facegear.geometry.kinematics import CentroidPath, ContactPath, SkewLine
+from facegear.geometry.kinematics import CentroidPath, ContactPath
+from facegear.geometry.skew_line import SkewLine
 from facegear.mechanics import cases
-from facegear.mechanics.classical import GearPair
+from facegear.mechanics.classical_pairs import GearPair
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.disk import shape_vector, unit_shape
 from facegear.mechanics.gearboxes import FIGURES

@@ -1,6 +1,10 @@
 """Files appear whole or not at all."""
 
+import os
 import re
+import signal
+import subprocess
+import sys
 
 import pytest
 
@@ -112,3 +116,60 @@ def test_a_folder_that_is_there_keeps_what_is_not_replaced(tmp_path):
         "mine.txt": "mine",
         "one.txt": "1",
     }
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from facegear.support.files import {place}
+with {place}(Path(sys.argv[1])) as place:
+    (place / "one.txt" if place.is_dir() else place).write_text("half")
+    os.kill(os.getpid(), signal.{how})
+"""
+
+
+def killed(place, path, how="SIGKILL"):
+    """Write to a place in a process that ends itself by force; what is left beside it."""
+    program = KILLED.format(place=place.__name__, how=how)
+    done = subprocess.run([sys.executable, "-c", program, str(path)], check=False)
+    assert done.returncode == -getattr(signal, how)
+    return list(path.parent.iterdir())
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals as POSIX has them")
+@pytest.mark.parametrize("place", [written_whole, folder_written_whole])
+def test_what_a_killed_process_left_is_cleared_by_the_next_one(tmp_path, place):
+    path, other = tmp_path / "results.csv", tmp_path / "others.csv"
+    (left,) = killed(place, path)
+    assert left.name.startswith(".results.csv.")
+    # Another target leaves it alone, and so does one whose process still runs.
+    with written_whole(other) as free:
+        free.write_text("1")
+    assert sorted(tmp_path.iterdir()) == sorted([left, other])
+    running = left.with_name(re.sub(r"\.\d+\.(?=\w{8}(\.csv)?$)", f".{os.getpid()}.", left.name))
+    assert running != left
+    left.rename(running)
+    with place(path) as free:
+        (free / "one.txt" if free.is_dir() else free).write_text("1")
+        assert running.exists()
+    running.rename(left)
+    with place(path) as free:
+        (free / "one.txt" if free.is_dir() else free).write_text("2")
+        assert not left.exists()
+    assert sorted(tmp_path.iterdir()) == sorted([path, other])
+
+
+def test_hidden_files_of_ones_own_and_of_other_machines_stay(tmp_path):
+    own = [".results", ".results.txt", ".results.elsewhere.99999999.abcdefgh", ".results.notes.1.old"]
+    for name in own:
+        (tmp_path / name).write_text("mine")
+    with folder_written_whole(tmp_path / "results") as place:
+        (place / "one.txt").write_text("1")
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*own, "results"])
+
+
+def test_the_longest_name_of_a_file_can_be_written(tmp_path):
+    path = tmp_path / ("n" * 251 + ".csv")
+    with written_whole(path) as place:
+        place.write_text("1")
+    assert list(tmp_path.iterdir()) == [path]

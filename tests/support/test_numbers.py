@@ -21,11 +21,13 @@ from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, SkewLine, mesh_period
+from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.phases import phase_split
+from facegear.geometry.skew_line import SkewLine
+from facegear.geometry.timed_pairs import mesh_period
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import tongues
-from facegear.mechanics import cases, classical, disk, plate, torsional
+from facegear.mechanics import cases, classical, classical_pairs, disk, plate, torsional
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.gearboxes import FIGURES
@@ -62,8 +64,8 @@ CLASSICAL = (
     classical.Hill(0.25, classical.cosine_wave(), 0.125, 3.0),
     classical.Mathieu(0.25, 0.125, 3.0),
     classical.Meissner(0.25, 0.25, 0.1, 3.0),
-    classical.CoupledPair(0.3, 0.1, 0.2, 0.1),
-    classical.GearPair(1.3, 0.7, 0.1, 0.3, shaft_damping=0.1),
+    classical_pairs.CoupledPair(0.3, 0.1, 0.2, 0.1),
+    classical_pairs.GearPair(1.3, 0.7, 0.1, 0.3, shaft_damping=0.1),
 )
 DATACLASSES = [
     DRIVE,
@@ -98,11 +100,11 @@ FUNCTIONS = {
         {"frequency": 2.0, "depth": 0.3, "duty": 0.25, "damping_ratio": 0.1, "natural_frequency": 1.1},
     ),
     "stiffnesses": (
-        lambda first, second: classical.CoupledPair(0.3, stiffnesses=(first, second)),
+        lambda first, second: classical_pairs.CoupledPair(0.3, stiffnesses=(first, second)),
         {"first": 1.0, "second": 3.0},
     ),
     "masses": (
-        lambda mass, shaft: classical.GearPair(1.3, masses=(mass, 1), shaft_stiffnesses=(shaft, 1)),
+        lambda mass, shaft: classical_pairs.GearPair(1.3, masses=(mass, 1), shaft_stiffnesses=(shaft, 1)),
         {"mass": 3.0, "shaft": 0.7},
     ),
     "frequency": (

@@ -10,7 +10,7 @@ import facegear as fg
 from facegear.floquet.hsu import band_speeds
 from facegear.maps.closing import largest_growth
 from facegear.maps.sensitivity import sensitivity
-from facegear.mechanics.classical import GearPair
+from facegear.mechanics.classical_pairs import GearPair
 from facegear.support.threads import one_thread
 
 

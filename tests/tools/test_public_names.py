@@ -2,13 +2,16 @@
 
 import re
 from pathlib import Path
+from pydoc import locate
 
 import pytest
+import yaml
 
 import facegear as fg
 from tools.public_names import candidates, found, public_name
 
-PAGE = Path(__file__).resolve().parents[2] / "book" / "api.md"
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "book" / "api.md"
 
 
 def test_page_has_every_public_name_once():
@@ -49,3 +52,18 @@ def test_short_name_is_looked_for_in_the_class_and_in_the_module_of_its_docstrin
 def test_public_object_is_known_by_where_it_is_defined_too():
     assert public_name(found("facegear.maps.stability_map.stability_map")[-1]) == "stability_map"
     assert public_name(found("facegear.floquet.multipliers.with_method")[-1]) == ""
+
+
+def outside_names():
+    """Return the names that the stored inventories know, and what `_config.yml` links them from."""
+    config = yaml.safe_load((ROOT / "_config.yml").read_text("utf-8"))["sphinx"]["config"]
+    names = []
+    for _, path in config["intersphinx_mapping"].values():
+        names += (line.split()[0] for line in (ROOT / "book" / path).read_text("utf-8").splitlines()[3:])
+    return names, config["numpydoc_xref_aliases"]
+
+
+def test_names_of_other_libraries_exist_and_each_has_its_word():
+    names, aliases = outside_names()
+    assert sorted(re.sub(r":obj:`(.*)`", r"\1", target) for target in aliases.values()) == sorted(names)
+    assert all(locate(name) is not None for name in names)

@@ -8,6 +8,7 @@ from urllib.parse import SplitResult, parse_qs, urlsplit
 
 import pytest
 
+from facegear.support.provenance import made_by
 from tests.small_project import build, executed, laid_out, write_notebook
 
 pytestmark = [pytest.mark.slow, pytest.mark.takes(60)]
@@ -59,6 +60,16 @@ def test_only_what_changed_is_done_again(built: Path) -> None:
     assert build(project, "notebook").returncode == 0
     assert executed(project)["03_one"] == times["03_one"]
     assert executed(project)["04_two"] > times["04_two"]
+
+
+def test_the_foot_of_every_page_names_version_and_commit(built: Path) -> None:
+    made = made_by()
+    commit = f", commit {made['facegear_commit']}" if "facegear_commit" in made else ""
+    foot = f"Made by facegear {made['facegear_version']}{commit}."
+    html = built / "build" / "_build" / "html"
+    for page in ("intro.html", "notebooks/03_one.html", "notebooks/04_two.html"):
+        text = re.sub(r"\s+", " ", (html / page).read_text(encoding="utf-8"))
+        assert f'<div class="extra_footer"> {foot} </div>' in text, page
 
 
 def test_buttons_lead_to_files_of_the_repository_where_its_address_is_known(built: Path) -> None:

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from compendium.datasets.meshing import describe
 from facegear.floquet.models import Excited, replace_parameter
 from facegear.geometry.drive import Drive
-from facegear.geometry.point_contact import Misalignment, UnloadedContact
+from facegear.geometry.misalignment import Misalignment
+from facegear.geometry.point_contact import UnloadedContact
 from facegear.maps.parallel import in_processes
 from facegear.maps.response_map import frequency_response
 from facegear.maps.stability_map import stability_map

@@ -14,8 +14,10 @@ from compendium.datasets.transverse import describe, growth_map, tongue_sections
 from facegear.design.body import BodyDesign
 from facegear.design.teeth import root_stress, root_thickness, tooth_thickness
 from facegear.floquet.models import replace_parameter
-from facegear.geometry.drive import DEDENDUM, Drive
-from facegear.geometry.kinematics import ContactPath, SkewLine
+from facegear.geometry.drive import Drive
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.proportions import DEDENDUM
+from facegear.geometry.skew_line import SkewLine
 from facegear.maps.lobes import CriticalThickness, Lobe, highest_lobes
 from facegear.maps.parallel import in_processes
 from facegear.maps.tracing import tongues

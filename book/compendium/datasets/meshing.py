@@ -11,7 +11,9 @@ from scipy.optimize import brentq
 
 from facegear.geometry import flanks
 from facegear.geometry.drive import Drive
-from facegear.geometry.kinematics import ContactPath, PairStates, SkewLine
+from facegear.geometry.kinematics import ContactPath
+from facegear.geometry.skew_line import SkewLine
+from facegear.geometry.timed_pairs import PairStates
 from facegear.support.labelled import variable
 from facegear.support.parameters import integer_at_least
 from facegear.support.types import FloatArray

@@ -22,13 +22,9 @@ from facegear.maps.stability_map import stability_map
 from facegear.mechanics.disk import disk_matrices
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
 from facegear.mechanics.plate import Body
-from facegear.mechanics.spread_force import (
-    RIM_POINT,
-    ContactPointsAt,
-    Spread,
-    ToothPatches,
-    pressed_stiffness,
-)
+from facegear.mechanics.pressed_points import Spread
+from facegear.mechanics.pressed_stiffness import pressed_stiffness
+from facegear.mechanics.spreads import RIM_POINT, ContactPointsAt, ToothPatches
 from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import finite_array, rad_per_s

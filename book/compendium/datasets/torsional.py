@@ -21,7 +21,8 @@ from facegear.floquet.modal import ModalExpansion, standard_form
 from facegear.floquet.models import replace_parameter, value_of
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.radau import Radau
-from facegear.geometry.kinematics import CentroidPath, ContactPath, SkewLine
+from facegear.geometry.kinematics import CentroidPath, ContactPath
+from facegear.geometry.skew_line import SkewLine
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import borders, tongues
 from facegear.mechanics.gearboxes import HIGHEST_SPEED_RPM, TorsionalFigure

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from facegear.plotting.style import (
     BLUE,
@@ -66,10 +67,9 @@ def root_stress(data: xr.Dataset, allowable: float) -> Figure:
     ax.axhline(allowable / 1e6, color=VERMILION, linestyle=":", linewidth=2)
     ax.annotate(
         rf"$\sigma_Y/SF$ = {allowable / 1e6:.0f} MPa",
-        (float(data["pinion_teeth"].mean()), allowable / 1e6),
-        xytext=(0, 4),
+        (float(data["pinion_teeth"][0]), allowable / 1e6),
+        xytext=(0, 5),
         textcoords="offset points",
-        ha="center",
         color=VERMILION,
     )
     ax.set(xlabel=_TEETH, ylabel=r"$\sigma_{max}$ [MPa]", ylim=(0, None))
@@ -85,10 +85,10 @@ def _draw_tips(ax: Axes, chart: xr.Dataset) -> None:
         ax.plot(speed, ratio, "v", color=VERMILION, markersize=6, zorder=4)
         ax.annotate(
             f"{letter} {labels[number]}: {ratio:.4f}",
-            (speed, ratio),
+            (speed if speed > 150 else 5.0, ratio),
             xytext=(0, 7),
             textcoords="offset points",
-            ha="right" if speed > 700 else "center",
+            ha="right" if speed > 700 else "center" if speed > 150 else "left",
             fontsize=9,
             color=INK,
             bbox=_PAPER,
@@ -224,6 +224,10 @@ def lobe_near_tip(data: xr.Dataset, steps_rpm: tuple[float, ...]) -> Figure:
             color=GREY,
         )
     ax.set(xlabel="distance below the tip [% of $h/a$]", ylabel="width of the lobe [rpm]")
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
     return figure
 
 
@@ -257,10 +261,12 @@ def trade_off(data: xr.Dataset, allowable: float) -> Figure:
                 ax.annotate(
                     f"{teeth}",
                     (float(thickness.sel(pinion_teeth=teeth)), float(stress.sel(pinion_teeth=teeth))),
-                    xytext=(5, 4),
+                    xytext=(6, 5),
                     textcoords="offset points",
                     fontsize=8,
                     color=colour,
+                    bbox=_PAPER,
+                    zorder=1.5,  # below the points and lines, so that it hides none
                 )
     ax.axhline(allowable / 1e6, color=INK, linestyle=":", linewidth=1.6, label=r"$\sigma_Y/SF$")
     ax.set(xlabel="critical thickness $h_{cr}$ [mm]", ylabel=r"$\sigma_{max}$ [MPa]", ylim=(0, None))

@@ -20,6 +20,7 @@ from facegear.plotting.style import (
     VERMILION,
     draw_border,
     draw_unstable,
+    growth_bar,
     panels,
     styled,
 )
@@ -113,7 +114,7 @@ def stability(charts: Mapping[str, xr.Dataset], named: Mapping[str, tuple[float,
     figure.legend(
         handles, ["traced borders", "unstable with massless shafts"], loc="outside upper right", ncols=2
     )
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 

@@ -23,6 +23,7 @@ from facegear.plotting.style import (
     WIDTH,
     draw_border,
     draw_unstable,
+    growth_bar,
     panels,
     styled,
 )
@@ -235,8 +236,9 @@ def disk_alone(cases: Mapping[str, xr.Dataset], printed_hp: Mapping[str, Sequenc
             f"$P_c$ = {critical:.0f} hp",
             (critical, 0.97),
             xycoords=("data", "axes fraction"),
-            xytext=(5, 0),
+            xytext=(-5 if critical > 0.5 * _hp(float(data["power"][-1])) else 5, 0),
             textcoords="offset points",
+            ha="right" if critical > 0.5 * _hp(float(data["power"][-1])) else "left",
             va="top",
         )
         for power in printed_hp[title]:
@@ -284,7 +286,7 @@ def power_maps(maps: xr.Dataset, mean: Mapping[float, xr.Dataset]) -> Figure:
         ax.set_title(f"({'abcdef'[number]}) {_hp(power):.0f} hp", loc="left")
         ax.grid(False)
     axes[-1].set_xlabel(_SPEED)
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 
@@ -310,7 +312,7 @@ def compared_clocks(charts: Mapping[str, xr.Dataset]) -> Figure:
             ax.grid(False)
             ax.set_xlabel("speed [rpm]")
         axes[row * columns].set_ylabel(r"bearing stiffness $\mu$")
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 

@@ -58,7 +58,8 @@ def _draw_tooth(axes: Axes3D, tooth: xr.Dataset) -> None:
         )
         for edge in (points[:, 0], points[:, -1], points[0], points[-1]):
             axes.plot(edge[:, 0], -edge[:, 1], edge[:, 2], color=GREY, linewidth=0.7, zorder=2)
-    axes.set_xlabel("across tooth [mm]")
+    axes.set_xlabel("across tooth [mm]", labelpad=2)
+    axes.set_xticks([-4, 0, 4])
     axes.set_ylabel("radial [mm]", labelpad=12)
     axes.set_zlabel("axial [mm]")
     axes.set_box_aspect((1.1, 3.0, 1.1))
@@ -82,7 +83,7 @@ def tooth_and_contact_lines(tooth: xr.Dataset) -> Figure:
         ``surface`` (flank, along, across, axis) and ``line`` (fraction, point, axis) in the gear's frame [m].
     """
     figure = Figure(figsize=(WIDTH, 3.9))
-    figure.subplots_adjust(left=0.06, right=0.95, bottom=-0.02, top=1.2)
+    figure.subplots_adjust(left=0.1, right=0.95, bottom=0.02, top=1.16)
     axes = _axes_3d(figure)
     _draw_tooth(axes, tooth)
     _draw_lines(axes, tooth)
@@ -357,9 +358,9 @@ def undercut_condition(condition: xr.Dataset) -> Figure:
     *others, physical = condition["roots"].values
     for root in others:
         axes.plot(root, 0, "o", color=GREY, markersize=8, markerfacecolor="white", zorder=5)
-        label_line(axes, f"$t$ = {root:.4f}\non the far branch", (root, 0), (8, -52))
+        label_line(axes, f"$t$ = {root:.4f}\non the far branch", (root, 0), (-38, -70))
     axes.plot(physical, 0, "o", color=VERMILION, markersize=8, zorder=5)
-    label_line(axes, f"$t$ = {physical:.4f}\nphysical", (physical, 0), (-70, -96))
+    label_line(axes, f"$t$ = {physical:.4f}\nphysical", (physical, 0), (-46, -96))
     axes.set(xlabel=r"$t = \tan(\phi_s + \theta_{0s} + \theta_s^*)$", ylabel="condition (left $-$ right)")
     return figure
 

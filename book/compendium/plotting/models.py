@@ -154,10 +154,10 @@ def edge_load() -> Figure:
         linewidth=2.0,
         mutation_scale=15,
     )
-    note(left, (1.95, 0.65), "$F_t$", ha="left", color=VERMILION)
+    note(left, (1.8, 1.36), "$F_t$", ha="left", color=VERMILION)
     note(left, (0.45, 0.95), "$a$")
     turn(left, (0.0, 0.0), 1.25, (110.0, 190.0))
-    note(left, (-0.85, 0.6), r"$\Omega_2$")
+    note(left, (-0.75, 0.55), r"$\Omega_2$")
     for direction, name in ((place, r"$\sigma_r$"), (along, r"$\sigma_\theta$")):
         centre = np.array([-0.85, -1.0])
         arrow(left, tuple(centre), tuple(centre + 0.5 * direction), linewidth=0.9, mutation_scale=8)

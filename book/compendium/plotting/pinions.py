@@ -26,6 +26,7 @@ from facegear.plotting.style import (
     VERMILION,
     WIDTH,
     draw_unstable,
+    growth_bar,
     panels,
     styled,
 )
@@ -49,14 +50,7 @@ def _draw_growth(ax: Axes, growth: xr.DataArray, largest: float) -> Any:
 
 
 def _colour_bar(figure: Figure, axes: Sequence[Axes], largest: float) -> None:
-    figure.colorbar(
-        ScalarMappable(Normalize(0.0, largest), GROWTH),
-        ax=list(axes),
-        label=_GROWTH_LABEL,
-        location="bottom",
-        shrink=0.6,
-        aspect=40,
-    )
+    growth_bar(figure, axes, ScalarMappable(Normalize(0.0, largest), GROWTH))
 
 
 def _draw_names(ax: Axes, traced: xr.Dataset, apart: float) -> None:

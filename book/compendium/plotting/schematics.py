@@ -98,7 +98,7 @@ def generation(pinion: Mesh, gear: Mesh) -> Figure:
     axes.add_collection3d(collection)
     low, high = triangles.reshape(-1, 3).min(axis=0), triangles.reshape(-1, 3).max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    axes.set_box_aspect(high - low, zoom=1.25)
+    axes.set_box_aspect(high - low, zoom=1.05)
     axes.view_init(elev=32, azim=-62)
     axes.axis("off")
     return figure
@@ -150,13 +150,13 @@ def shaper_profile(drive: Drive, outline: FloatArray, flank: FloatArray, step: i
     label_line(axes, r"$\mathbf{r}_s(u_s,\theta_s)$", tuple(point * _MM), (-86, -34))
     middle = 0.5 * (tangent + point * _MM)
     label_line(axes, r"$r_{bs}\theta_s$", tuple(middle), (34, -40))
-    for radius, start, stop, name in (
-        (0.62, 0.0, half, r"$\theta_{0s}$"),
-        (0.74, half, half + roll, r"$\theta_s$"),
+    for radius, start, stop, name, aside in (
+        (0.62, 0.0, half, r"$\theta_{0s}$", (26, 12)),
+        (0.74, half, half + roll, r"$\theta_s$", (10, -26)),
     ):
         _circle(axes, radius * base, (-np.pi / 2 + start, -np.pi / 2 + stop), color=INK, linewidth=1.1)
         angle = -np.pi / 2 + 0.5 * (start + stop)
-        label_line(axes, name, (radius * base * np.cos(angle), radius * base * np.sin(angle)), (26, 12))
+        label_line(axes, name, (radius * base * np.cos(angle), radius * base * np.sin(angle)), aside)
     _arrow(axes, (0, 0), (0, 0.3 * base))
     _arrow(axes, (0, 0), (0.3 * base, 0))
     axes.text(0.32 * base, 0, "$x_s$", va="center")

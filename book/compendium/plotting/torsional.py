@@ -22,6 +22,7 @@ from facegear.plotting.style import (
     VERMILION,
     draw_border,
     draw_unstable,
+    growth_bar,
     panels,
     styled,
 )
@@ -61,7 +62,7 @@ def moment_arms(data: xr.Dataset) -> Figure:
         float(data["conjugate"]) * 1e3, color=INK, linewidth=1.0, linestyle=":", label="conjugate tooth"
     )
     axes[0].set_ylabel("moment arm [mm]")
-    axes[0].legend(loc="best")
+    axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     axes[1].step(data["time"], data["pairs"], where="mid", color=INK)
     axes[1].set(
         xlabel="time [mesh periods]", ylabel="pairs in mesh", ylim=(0.0, float(data["pairs"].max()) + 0.5)
@@ -91,10 +92,11 @@ def natural_frequencies(panels_of: Mapping[str, xr.Dataset]) -> Figure:
                 ax.annotate(
                     f"ratio {1 + float(data['closest'][pair]):.5g}",
                     (at, float(np.sqrt(height[0] * height[1]))),
-                    xytext=(9, -12),
+                    xytext=(12, 0) if height[1] > 1.5 * height[0] else (12, -16),
                     textcoords="offset points",
                     fontsize=9,
                     va="center",
+                    bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.6},
                 )
         ax.set(yscale="log", xscale=data.attrs["scale"], xlabel=_AXIS[name], ylabel="natural frequency [Hz]")
         ax.set_xlim(float(data[name][0]), float(data[name][-1]))
@@ -105,7 +107,7 @@ def natural_frequencies(panels_of: Mapping[str, xr.Dataset]) -> Figure:
         )
         right.set_ylabel("natural speed [rpm]")
         ax.set_title(title, loc="left")
-    axes[0].legend(loc="upper right", ncols=3)
+    axes[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
     return figure
 
 
@@ -209,5 +211,5 @@ def stability_maps(charts: Mapping[str, xr.Dataset]) -> Figure:
     axes[0].plot([], [], ".", color=VERMILION, label="traced borders (Floquet)")
     axes[0].plot([], [], "|--", color=ORANGE, label="bands after Hsu")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure

@@ -98,6 +98,7 @@ def variant_tongues(data: xr.Dataset) -> Figure:
                 ax.annotate(label, above, xytext=offset, textcoords="offset points", ha="center", fontsize=9)
     ax.set_yticks(range(len(names)), names[::-1])
     ax.set(xlabel="speed of the face gear [rpm]", ylim=(-0.6, len(names) + 0.05))
+    ax.set_axisbelow(True)
     ax.grid(axis="y", visible=False)
     figure.colorbar(
         mpl.cm.ScalarMappable(norm, _GROWTH), ax=ax, label="largest growth rate [1/s]", pad=0.02, aspect=14

@@ -18,6 +18,7 @@ from facegear.plotting.style import (
     VERMILION,
     draw_border,
     draw_unstable,
+    growth_bar,
     panels,
     styled,
 )
@@ -133,7 +134,7 @@ def stability_maps(
         _draw_windows(ax, chart, windows[title])
         ax.set_title(title, loc="left")
     axes[-1].set_xlabel(_SPEED)
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 
@@ -164,14 +165,24 @@ def wide_maps(
         right = ax.get_xlim()[1]
         for name, height in marks[title].items():
             ax.axhline(height, color=INK, linestyle=":", linewidth=1.0)
-            ax.text(0.99 * right, height, name, ha="right", va="bottom", fontsize=9, color=INK)
+            ax.annotate(
+                name,
+                (0.99 * right, height),
+                xytext=(0, 2),
+                textcoords="offset points",
+                ha="right",
+                va="bottom",
+                fontsize=9,
+                color=INK,
+                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.4},
+            )
         share = 100.0 * (chart["growth_rate"].values > 0.0).mean(axis=1)
         beside.plot(share, chart[_parameter(chart)].values * _SCALE[_parameter(chart)], color=VERMILION)
         beside.set_xlim(left=0.0)
         ax.set_title(title, loc="left")
     axes[-2].set_xlabel(_SPEED)
     axes[-1].set_xlabel("unstable speeds [%]")
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 
@@ -194,7 +205,7 @@ def compared_maps(charts: Mapping[str, xr.Dataset], columns: int = 2) -> Figure:
         ax.set_title(title, loc="left", fontsize=10)
         if place // columns == rows - 1:
             ax.set_xlabel(_SPEED)
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", location="bottom", shrink=0.6, aspect=40)
+    growth_bar(figure, axes, mesh)
     return figure
 
 

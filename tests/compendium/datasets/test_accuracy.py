@@ -6,11 +6,11 @@ import pytest
 from compendium import reference
 from compendium.datasets import accuracy as accuracy_arrays
 from facegear.floquet import multipliers as floquet
-from facegear.mechanics import classical
+from facegear.mechanics import classical_pairs
 from facegear.support import labelled
 from tests.independent import classical as independent
 
-GEARS = classical.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
+GEARS = classical_pairs.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_doubling_repeats_the_trap_at_nine_sixteenths():
     assert (data.change.values[1:] < 0.3 * np.append(np.inf, data.change.values[1:-1])).all()
     assert data.error.values[-1] > 100 * data.change.values[-1]
     # 0.563 and 9/16 are the same to these sub-intervals.
-    other = classical.GearPair(1.5625, droop=0.4, shaft_damping=0.02).system(1.1)
+    other = classical_pairs.GearPair(1.5625, droop=0.4, shaft_damping=0.02).system(1.1)
     assert (
         accuracy_arrays.doubling(other, 64, 3, "gears").error.values[-1] < 10 * data.aligned_error.values[-1]
     )

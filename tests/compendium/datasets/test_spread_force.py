@@ -9,7 +9,7 @@ import facegear as fg
 from compendium.datasets import spread_force as arrays
 from compendium.plotting import spread_force as draw
 from facegear.design.envelope import critical_power, disk_growth_rate
-from facegear.mechanics.spread_force import RIM_POINT, ContactPoints, FaceStrip, PitchPoint, ToothPatches
+from facegear.mechanics.spreads import RIM_POINT, ContactPoints, FaceStrip, PitchPoint, ToothPatches
 from tests.figures import texts
 
 BODY = fg.Body(fg.Drive(26, 130, 3.175e-3), 0.03, nodal_circles=0, nodal_diameters=2)

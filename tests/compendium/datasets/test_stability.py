@@ -8,11 +8,11 @@ import pytest
 from compendium.datasets import stability as arrays
 from facegear.floquet import multipliers as floquet
 from facegear.maps.stability_map import stability_map
-from facegear.mechanics import classical
+from facegear.mechanics import classical, classical_pairs
 from tests.figures import check_round_trip
 from tests.independent import classical as independent
 
-GEARS = classical.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
+GEARS = classical_pairs.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.1)
 
 
 def mathieu_chart(frequencies, depths):
@@ -107,7 +107,7 @@ def test_bands_open_at_the_threshold_of_damping():
 @pytest.mark.parametrize("kind", ["sum", "difference"])
 def test_bands_of_the_coupled_pair_follow_the_formula(kind):
     how = {"coupling": 0.8} if kind == "sum" else {"circulation": 0.8}
-    data = arrays.bands(classical.CoupledPair(1.0, damping=0.02, **how), [0.4], 1, "pair")
+    data = arrays.bands(classical_pairs.CoupledPair(1.0, damping=0.02, **how), [0.4], 1, "pair")
     label = {"sum": "(1+2)/1", "difference": "(2-1)/1"}[kind]
     band = data["label"].values.tolist().index(label)
     expected = independent.hsu_pair(0.4, how.get("coupling", 0.0), how.get("circulation", 0.0), 0.02)

@@ -1,61 +1,31 @@
 """Driving force spread over teeth: limits, statics, a route by its stresses, symmetry, and what is refused."""
 
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import quad_vec
 
 import facegear as fg
 from facegear.design.envelope import critical_power, mode_critical_powers
 from facegear.mechanics.cases import CASE_1, CASE_2
 from facegear.mechanics.disk import disk_modes, unit_shape
 from facegear.mechanics.edge_stiffness import edge_load_stiffness, unit_stiffness
-from facegear.mechanics.spread_force import (
+from facegear.mechanics.pressed_stiffness import pressed_stiffness
+from facegear.mechanics.spreads import (
     RIM_POINT,
     ContactPoints,
     ContactPointsAt,
     FaceStrip,
     PitchPoint,
-    PressedPoints,
     RimPoint,
-    Spread,
     ToothPatches,
-    pitch_ratio,
-    pressed_stiffness,
     root_thickness,
 )
 from tests.independent.spread_load import Press, PressedDisk, stresses
+from tests.mechanics.own_spreads import DRIVE, SHARED, Moved, Own, assert_same
 from tests.mechanics.test_transverse import complex_disk, unitary
-
-DRIVE = CASE_1.drive
-SHARED = fg.Contact(path=fg.shared_load("length_share"), sharing="each")
-
-
-class Moved(Spread):
-    """Points of one's own: shares of the moment at radii and angles."""
-
-    def __init__(self, radius, angle=0.0, share=1.0):
-        columns = np.broadcast_arrays(*map(np.atleast_1d, (radius, angle, share)))
-        self.given = PressedPoints(*(np.asarray(column, dtype=float) for column in columns))
-
-    def points(self, drive):
-        return self.given
-
-
-@dataclass(frozen=True)
-class Own(Spread):
-    """As somebody would write it from the documentation."""
-
-    radius: object = (1.0,)
-    angle: object = (0.0,)
-    share: object = (1.0,)
-
-    def points(self, drive):
-        return PressedPoints(self.radius, self.angle, self.share)
 
 
 def by_stresses(body, speed, press, harmonics):
@@ -65,10 +35,6 @@ def by_stresses(body, speed, press, harmonics):
     values = {name: getattr(plain, name) for name in names}
     disk = PressedDisk(**values, force=1.0, harmonics=harmonics, press=press)
     return [U.conj().T @ part @ U for part in disk.parts(speed)]
-
-
-def assert_same(found, expected, relative=1e-12):
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=relative * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("speed", [0.0, 104.7])
@@ -205,132 +171,6 @@ def test_what_following_adds_is_the_force_on_the_slope_under_it():
     slope = slope + np.tan(angle) * unit_shape(CASE_1.modes, x, angle, by_radius=1)
     scale = 2 * np.pi * CASE_1.material.density * CASE_1.thickness * CASE_1.outer_radius**3
     assert_same(found, -np.outer(value, slope) / x / scale)
-
-
-class TestPoints:
-    @pytest.mark.parametrize(
-        "spread",
-        [
-            RIM_POINT,
-            PitchPoint(),
-            FaceStrip(),
-            FaceStrip(8e-3),
-            ContactPoints(SHARED),
-            ContactPointsAt(SHARED, 0.3),
-            ToothPatches(ContactPoints(SHARED), FaceStrip(8e-3)),
-            ContactPoints(fg.Contact(path=fg.line_contact, sharing="each")),
-            ContactPoints(fg.Contact()),
-        ],
-    )
-    def test_shares_are_of_one_moment_on_the_teeth(self, spread):
-        points = spread.points(DRIVE)
-        assert points.share.sum() == pytest.approx(1.0, abs=1e-12)
-        assert points.share.min() > 0.0
-        assert points.radius.max() < 1.002
-        assert points.radius.min() > DRIVE.inner_radius / DRIVE.outer_radius - 1e-9
-        # Arm of the force about the axis: r cos θ, so that the moment is ϖ F_t a.
-        force = np.hypot(points.tangential, points.radial)
-        moment = force * points.radius * np.cos(points.angle)
-        np.testing.assert_allclose(moment, points.share, rtol=1e-12)
-
-    def test_the_mean_over_a_period_is_that_of_its_instants(self):
-        def wave(x):
-            points = ContactPointsAt(SHARED, x).points(DRIVE)
-            return (points.share * points.radius * np.exp(3j * points.angle)).sum()
-
-        edges = [*SHARED.places(DRIVE)[0].position.breakpoints, 1.0]
-        mean = sum(quad_vec(wave, *ends, epsabs=1e-12, epsrel=1e-12)[0] for ends in pairwise(edges))
-        points = ContactPoints(SHARED).points(DRIVE)
-        found = (points.share * points.radius * np.exp(3j * points.angle)).sum()
-        assert abs(found - mean) < 1e-10
-
-    def test_against_the_rotation_the_points_are_mirrored(self):
-        there = ContactPoints(SHARED).points(DRIVE)
-        mirrored = ContactPoints(replace(SHARED, travel="with_disk")).points(DRIVE)
-        np.testing.assert_allclose(mirrored.angle, -there.angle, atol=1e-15)
-        np.testing.assert_allclose(mirrored.share, there.share, atol=1e-15)
-
-    def test_more_nodes_change_nothing(self, monkeypatch):
-        spread = ToothPatches(ContactPoints(SHARED), FaceStrip(root_thickness(DRIVE)))
-        few = sum(pressed_stiffness(CASE_1, 50.0, 6, (0.0,), spread))
-        from facegear.mechanics import spread_force
-
-        for name, nodes in (("_ALONG", 20), ("_ACROSS", 8), ("_IN_PIECE", 32)):
-            monkeypatch.setattr(spread_force, name, nodes)
-        spread_force._moments.cache_clear()
-        more = sum(pressed_stiffness(CASE_1, 50.0, 6, (0.0,), spread))
-        spread_force._moments.cache_clear()
-        assert_same(few, more)
-
-    def test_the_pitch_circle_bears_the_moment_of_the_power(self):
-        force = fg.DrivingForce(4e5, 500.0)
-        moment = force.newtons(DRIVE) * pitch_ratio(DRIVE) * DRIVE.outer_radius
-        assert moment == pytest.approx(4e5 / (500.0 * DRIVE.speed_ratio), rel=1e-12)
-        assert PitchPoint().points(DRIVE).radius == pytest.approx(pitch_ratio(DRIVE))
-
-
-class TestPointsOfOnesOwn:
-    LOAD = fg.MeshLoad(1.0, 3e-6, 1.0)
-    FORCE = fg.DrivingForce(3e5, 523.6)
-
-    def test_lists_are_as_good_as_arrays(self):
-        points = PressedPoints([0.9, 1], (0.0, 0.1), [0.25, 0.75])
-        assert {column.dtype for column in (points.radius, points.angle, points.share)} == {np.dtype(float)}
-        own = pressed_stiffness(CASE_1, 50.0, 6, (0.0,), Own((0.9, 1), (0, 0.1), (0.25, 0.75)))
-        moved = pressed_stiffness(CASE_1, 50.0, 6, (0.0,), Moved([0.9, 1.0], [0.0, 0.1], [0.25, 0.75]))
-        assert_same(sum(own), sum(moved), 1e-13)
-
-    def test_a_pair_without_load_presses_nowhere(self):
-        for instant in (*SHARED.places(DRIVE)[0].position.breakpoints, 1.0):
-            points = ContactPointsAt(SHARED, float(instant)).points(DRIVE)
-            assert points.share.min() > 0.0
-            assert points.share.sum() == pytest.approx(1.0, abs=1e-12)
-
-    @pytest.mark.parametrize(
-        ("own", "error", "told"),
-        [
-            (Own(share=(2.0,)), ValueError, "share must have the sum 1, of one moment, got 2"),
-            (Own((1.0, 1.0), (0.0, 0.1), (1.5, -0.5)), ValueError, "share must be greater than 0 .*got -0.5"),
-            (Own(share=(np.nan,)), ValueError, "share must be finite, got an entry nan"),
-            (Own(angle=(np.inf,)), ValueError, "angle must be finite, got an entry inf"),
-            (
-                Own(angle=(20.0,)),
-                ValueError,
-                r"angle must be less than .*got 20 rad \(radians, not degrees\?\)",
-            ),
-            (Own(radius=(231.9,)), ValueError, r"radius must be .* got 231\.9 \(a ratio, not m or mm\?\)"),
-            (Own(radius=(0.0,)), ValueError, "radius must be .* got 0 "),
-            (
-                Own((1.0, 0.9), (0.0,), (1.0,)),
-                ValueError,
-                r"of one length, .*got the shapes \(2,\), \(1,\), \(1,\)",
-            ),
-            (Own((), (), ()), ValueError, "radius, angle and share must be lists .* of at least one point"),
-            (Own(1.0, 0.0, 1.0), ValueError, "radius, angle and share must be lists"),
-            (Own(radius=("rim",)), TypeError, "radius must be real numbers"),
-        ],
-    )
-    def test_what_they_may_not_be_is_named_with_the_model(self, own, error, told):
-        with pytest.raises(error, match=told):
-            fg.Transverse(CASE_1, self.LOAD, force=replace(self.FORCE, spread=own))
-
-    def test_points_in_the_bore_are_refused(self):
-        bore = Own(radius=(0.9 * CASE_1.bore_ratio,))
-        told = r"radius of Own.points must be r over the outer radius, at least that of the bore, .* not m or mm\?"
-        with pytest.raises(ValueError, match=told):
-            pressed_stiffness(CASE_1, 50.0, 6, (0.0,), bore)
-        with pytest.raises(ValueError, match=told):
-            mode_critical_powers(CASE_1, 523.6, bore)
-
-    def test_something_else_than_points_is_refused(self):
-        class Loose(Spread):
-            def points(self, drive):
-                return [1.0], [0.0], [1.0]
-
-        with pytest.raises(
-            TypeError, match=r"Loose\.points must return PressedPoints\(radius, angle, share\), got"
-        ):
-            pressed_stiffness(CASE_1, 50.0, 6, (0.0,), Loose())
 
 
 class TestDrivingForce:

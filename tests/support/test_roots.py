@@ -1,4 +1,4 @@
-"""The search for the ends of contact lines, by itself."""
+"""The search for many roots at once."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 
-from facegear.geometry.contact_lines import crossing
+from facegear.support.roots import crossing
 
 
 @given(

@@ -1,4 +1,4 @@
-"""Teeth as plates: their deflection against beams and thin plates, their contact against its own conditions."""
+"""Teeth as plates in contact: the law against its own conditions, and between the laws at its ends."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -6,23 +6,16 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import quad
 
 from facegear.geometry.drive import Drive
-from facegear.geometry.point_contact import ALIGNED, Misalignment
+from facegear.geometry.misalignment import ALIGNED, Misalignment
 from facegear.mechanics.compliance import Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.elastic_teeth import GearTooth, PinionTooth
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.paths import loaded_contact
+from facegear.mechanics.plate_compliance import PlateCompliance
 from facegear.mechanics.slices import Slices
-from facegear.mechanics.tooth_plate import (
-    CantileverPlate,
-    GearTooth,
-    Load,
-    PinionTooth,
-    PlateCompliance,
-    local_compliance,
-)
 from facegear.support.parameters import STEEL
 
 DRIVE = Drive(26, 130, 3.175e-3, shaper_teeth=27)
@@ -41,140 +34,6 @@ def of_law(torque, law):
     made = LoadedContact(DRIVE, torque, compliance="plate")
     made.__dict__["_law"] = law
     return made
-
-
-# --- plates ---------------------------------------------------------------------------------------------------
-
-
-def across(height, position):
-    # Unit loads square to a plate.
-    places = np.broadcast_arrays(np.asarray(height, dtype=float), np.asarray(position, dtype=float))
-    return Load(*places, np.ones(places[0].shape), np.zeros(places[0].shape), np.zeros(places[0].shape))
-
-
-def constant(thickness, width, poissons_ratio, *degrees):
-    return CantileverPlate(
-        1.0,
-        (-0.5 * width, 0.5 * width),
-        lambda h, u: np.full_like(h, thickness),
-        2e11,
-        poissons_ratio,
-        *degrees,
-    )
-
-
-@pytest.mark.parametrize(("poissons_ratio", "width", "error"), [(0.0, 2.0, 1e-11), (0.3, 20.0, 1e-3)])
-def test_a_line_load_at_the_tip_bends_a_plate_as_timoshenkos_beam(poissons_ratio, width, error):
-    thickness, plate = 0.3, constant(0.3, width, poissons_ratio, 5, 24)
-    u, weights = np.polynomial.legendre.leggauss(32)
-    u, weights = 0.5 * width * u, 0.5 * width * weights
-    middle = (plate.influence(across([1.0], [0.0]), across(np.ones(32), u)) @ weights).item()
-    rigidity = 2e11 * thickness**3 / (12.0 * (1.0 - poissons_ratio**2))
-    shear = 5.0 / 6.0 * 2e11 / (2.0 * (1.0 + poissons_ratio)) * thickness
-    assert_allclose(middle, 1.0 / (3.0 * rigidity) + 1.0 / shear, rtol=error)
-
-
-def long_thin_plate(poissons_ratio):
-    """Return w D/(P h²) under a force on the free edge of an endless Kirchhoff plate, from its Fourier integral."""
-
-    def amplitude(k):
-        c, s = np.cosh(k), np.sinh(k)
-        # Clamped at 0: sinh kx − kx cosh kx, and kx sinh kx; their derivatives at the free edge over powers of k.
-        value = np.array([s - k * c, k * s])
-        first = np.array([-k * s, s + k * c])
-        second = np.array([-s - k * c, 2.0 * c + k * s])
-        third = np.array([-2.0 * c - k * s, 3.0 * s + k * c])
-        moment = second - poissons_ratio * value
-        force = third - (2.0 - poissons_ratio) * first
-        return value @ np.linalg.solve(np.stack([moment, force]), [0.0, -1.0]) / k**3
-
-    return quad(amplitude, 1e-3, 60.0, limit=200)[0] / np.pi + 1e-3 * amplitude(1e-3) / np.pi
-
-
-@pytest.mark.parametrize("poissons_ratio", [0.0, 0.3])
-def test_a_force_on_a_thin_wide_plate_moves_its_edge_as_fouriers_integral_says(poissons_ratio):
-    plate = constant(0.02, 5.0, poissons_ratio, 7, 26)
-    rigidity = 2e11 * 0.02**3 / (12.0 * (1.0 - poissons_ratio**2))
-    tip = across([1.0], [0.0])
-    assert_allclose(plate.influence(tip, tip).item() * rigidity, long_thin_plate(poissons_ratio), rtol=0.02)
-
-
-@pytest.mark.parametrize("tooth", [PinionTooth(SLICES, STEEL), GearTooth(SLICES, STEEL)])
-def test_what_a_force_moves_elsewhere_a_force_there_moves_here(tooth):
-    loads = tooth.load(*SLICES.generated(np.array([-0.003, 0.0, 0.002]), np.array([2.2, 1.6, 1.1])))
-    influence = tooth.plate.influence(loads, loads)
-    assert_allclose(influence, influence.T, rtol=1e-12)
-    assert np.all(np.linalg.eigvalsh(influence) > 0.0)
-    # The work of a force is twice the energy of the plate: its stiffness solved for directly.
-    size, x, y = tooth.plate.height, 2.0 * loads.height / tooth.plate.height - 1.0, loads.position
-    y = (2.0 * y - sum(tooth.plate.ends)) / np.subtract(*tooth.plate.ends[::-1])
-    rows = (1.0 + x[:, np.newaxis]) / 2.0 * np.polynomial.legendre.legvander(x, tooth.across - 1)
-    columns = np.polynomial.legendre.legvander(y, tooth.along - 1)
-    products = (rows[:, :, np.newaxis] * columns[:, np.newaxis, :]).reshape(3, -1)
-    work = [part[:, np.newaxis] * products for part in (loads.across, loads.up / size, loads.along / size)]
-    force = np.concatenate(work, axis=1)
-    assert_allclose(influence, force @ np.linalg.solve(tooth.plate.stiffness, force.T), rtol=1e-9)
-
-
-# --- teeth ----------------------------------------------------------------------------------------------------
-
-
-def test_the_pinions_tooth_has_half_a_pitch_on_the_pitch_circle():
-    tooth, radius, quarter = PinionTooth(SLICES, STEEL), DRIVE.pitch_radius, 0.5 * np.pi / DRIVE.pinion_teeth
-    root = DRIVE.dedendum_radius * np.cos(np.pi / DRIVE.pinion_teeth - DRIVE.space_half_angle)
-    height = np.array([radius * np.cos(quarter) - root])
-    assert_allclose(tooth.thickness(height, height), 2.0 * radius * np.sin(quarter), rtol=1e-6)
-
-
-def test_the_gears_tooth_is_as_thick_as_its_flank_lies_from_its_middle():
-    tooth, flank = GearTooth(SLICES, STEEL), DRIVE.generating.tooth_flank(9, 7)
-    q = np.arccos(DRIVE.generating.contact_region.position(0.0) / flank.position)
-    load = tooth.load(q, flank.roll)
-    chord = 2.0 * np.abs(flank.points[..., 0])
-    assert_allclose(
-        tooth.thickness(load.height, load.position), np.maximum(chord, 0.05 * DRIVE.module), rtol=1e-9
-    )
-    top = tooth.thickness(np.full(5, tooth.height), flank.position[:-4, 0])
-    assert_allclose(top, DRIVE.top_thickness(flank.position[:-4, 0]), rtol=1e-4)
-
-
-def test_forces_on_the_gears_tooth_are_square_to_its_flank():
-    tooth, flank = GearTooth(SLICES, STEEL), DRIVE.generating.tooth_flank(41, 21)
-    along, up = np.gradient(flank.points, axis=0), np.gradient(flank.points, axis=1)
-    normal = np.cross(along, up)[10:-10:5, 5:-5:3]
-    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    q = np.arccos(DRIVE.generating.contact_region.position(0.0) / flank.position[10:-10:5, 5:-5:3])
-    load = tooth.load(q, flank.roll[10:-10:5, 5:-5:3])
-    half = np.abs(flank.points[10:-10:5, 5:-5:3, 0])
-    # In Γ2 the face runs along −y and the tooth stands up along z.
-    force = np.stack([load.across, load.along / half, -load.up / half], axis=-1)
-    assert_allclose(np.abs((force * normal).sum(axis=-1)), 1.0, atol=1e-3)
-
-
-def test_flanks_give_way_next_to_the_contact_as_strain_under_hertzs_pressure_adds_up():
-    modulus, poissons_ratio = STEEL.youngs_modulus, STEEL.poissons_ratio
-    region = SLICES.contact
-    middle = np.array(region.pressure_angle), np.array(0.5 * region.rolls.sum())
-    plane = modulus / (1.0 - poissons_ratio**2)
-    width = 4.0 * 1e9 / (region.principal_curvatures[1] * plane)
-    ratio = poissons_ratio / (1.0 - poissons_ratio)
-
-    def strain(z):
-        """Plane strain below the middle of the contact, over p0 (Johnson, section 4.2)."""
-        root = np.hypot(width, z)
-        sideways = (width**2 + 2.0 * z**2) / root / width - 2.0 * z / width
-        return (width / root - ratio * sideways) / plane
-
-    total = 0.0
-    for tooth in (PinionTooth(SLICES, STEEL), GearTooth(SLICES, STEEL)):
-        load = tooth.load(*middle)
-        half = np.hypot(load.up, load.along) / np.sqrt(1.0 - load.across**2)
-        total += quad(strain, 0.0, float(half / np.abs(load.across)), points=[width])[0]
-    # Both are deep against the width, as the formula takes them.
-    assert_allclose(local_compliance(SLICES, STEEL), total * 1e9 / (0.5 * np.pi * width * 1e9), rtol=2e-3)
-
-
-# --- contact --------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("torque", [10.0, 2000.0])

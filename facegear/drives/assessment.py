@@ -1,0 +1,312 @@
+"""What is known of the stability of a drive: the verdict, what decides it, and what of the speeds is left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+from facegear.drives import disk_response
+from facegear.drives.basis import unstable_share
+from facegear.drives.disk_response import DiskResponse
+from facegear.drives.drive_file import DriveFile
+from facegear.drives.findings import TORSION
+from facegear.drives.intervals import Intervals, gaps, in_rpm, united
+from facegear.drives.outcome import Outcome
+from facegear.drives.report_arrays import describe
+from facegear.drives.tolerances import WorstCase
+from facegear.maps.tracing import Tongue
+from facegear.support.labelled import text, variable
+from facegear.support.parameters import rpm
+
+SAFE, UNSTABLE, DEPENDS = "safe under all", "unstable under all", "depends"
+"""What an assessment may come to."""
+
+# What two models may differ in, as a sentence has it.
+_EFFECTS = {"contact": "the contact", "force": "the direction of the driving force", "teeth": "the teeth"}
+# Intervals of speed named one by one.
+_NAMED = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Assessment:
+    """What is known of the stability of a drive.
+
+    Attributes
+    ----------
+    file : DriveFile
+    outcomes : tuple of Outcome
+        The file's own contact and teeth first.
+    torsion : dict of str to tuple of Tongue
+        Tongues in torsion under each contact and each arm of the mesh force, the file's own first, over the range of
+        speed with its tolerance; empty where the file has no gearbox.
+    worst : dict of str to WorstCase
+        Of the file's own contact and teeth, by the direction of the force, and of its gearbox in "torsion"; empty where
+        the file has no tolerances.
+    response : xarray.Dataset or None
+        Steady response of the gearbox to the torque of one pinion's power
+        (:func:`facegear.maps.response_map.frequency_response`), if there is one.
+    change : str
+        The change that helps the file's own model most, made in earnest; empty if there is none.
+    left_out : tuple of str
+        What could not be computed, and why.
+    disk_responses : tuple of DiskResponse
+        Forced response of the disk in each model of the file's own contact, or why there is none.
+    """
+
+    file: DriveFile
+    outcomes: tuple[Outcome, ...]
+    torsion: dict[str, tuple[Tongue, ...]]
+    worst: dict[str, WorstCase]
+    response: xr.Dataset | None
+    change: str
+    left_out: tuple[str, ...]
+    disk_responses: tuple[DiskResponse, ...] = ()
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Lowest and highest speed [rad/s]."""
+        return self.file.requirements.speeds
+
+    @property
+    def verdict(self) -> str:
+        """One of "safe under all", "unstable under all", "depends": models, and values in their tolerances."""
+        disk = [outcome.is_stable for outcome in self.outcomes]
+        torsion = [not found for found in self.torsion.values()] or [True]
+        if all(disk) and all(torsion) and all(case.is_stable for case in self.worst.values()):
+            return SAFE
+        # A drive is stable where the disk and the gearbox are.
+        return DEPENDS if any(disk) and any(torsion) else UNSTABLE
+
+    @property
+    def decides(self) -> tuple[str, ...]:
+        """What turns the verdict, in words: effects in which alone a stable and an unstable model differ."""
+        found = []
+        for effect, words in _EFFECTS.items():
+            rest = [name for name in _EFFECTS if name != effect]
+            seen: dict[tuple[str, ...], set[bool]] = {}
+            for outcome in self.outcomes:
+                key = tuple(getattr(outcome.variant, name) for name in rest)
+                seen.setdefault(key, set()).add(outcome.is_stable)
+            if any(len(kinds) == 2 for kinds in seen.values()):
+                found.append(words)
+        nominal = {o.variant.force: o.is_stable for o in reversed(self.outcomes) if self._is_own(o)}
+        if self.torsion:
+            nominal[TORSION] = not next(iter(self.torsion.values()))
+        if any(nominal.get(force) and not case.is_stable for force, case in self.worst.items()):
+            found.append("where in their tolerances stiffness, damping and speed lie")
+        if len({bool(tongues) for tongues in self.torsion.values()}) == 2:
+            found.append("contact or arm of the mesh force in torsion")
+        return tuple(found)
+
+    def _is_own(self, outcome: Outcome) -> bool:
+        first = self.outcomes[0].variant
+        return (outcome.variant.contact, outcome.variant.teeth) == (first.contact, first.teeth)
+
+    @cached_property
+    def always_unstable(self) -> Intervals:
+        """Intervals of speed [rad/s] in which all models of the disk's motion, or all of torsion, are unstable."""
+
+        def in_all(family: Sequence[Sequence[Tongue]]) -> Intervals:
+            stable = [gap for found in family for gap in gaps(_intervals(found), self.speeds)]
+            return gaps(united(stable), self.speeds) if family else ()
+
+        return united([*in_all([o.tongues for o in self.outcomes]), *in_all([*self.torsion.values()])])
+
+    @cached_property
+    def always_stable(self) -> Intervals:
+        """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable."""
+        every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
+        every += [interval for case in self.worst.values() for interval in case.swept]
+        # What opens between two corners has no width that is known.
+        every += [(each.speed, each.speed) for case in self.worst.values() for each in case.opens]
+        every += [interval for found in self.torsion.values() for interval in _intervals(found)]
+        return gaps(united(every), self.speeds)
+
+    @property
+    def headline(self) -> str:
+        """The verdict in a sentence or two, with what it was computed for."""
+        low, high = (f"{rpm(speed):.4g}" for speed in self.speeds)
+        count = len(self.outcomes)
+        stable = sum(outcome.is_stable for outcome in self.outcomes)
+        are = f"{stable} {'is' if stable == 1 else 'are'}"
+        where = f"from {low} to {high} rpm, of {count} models of the disk's motion"
+        if self.verdict == SAFE:
+            words = f"Safe under all: {where} none is unstable at any speed."
+        elif self.verdict == UNSTABLE and stable:
+            words = f"Unstable under all, in torsion; {where} {are} stable at all speeds."
+        elif self.verdict == UNSTABLE:
+            words = f"Unstable under all: {where} each is unstable at some speeds."
+        else:
+            words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
+        if self.torsion:
+            still = sum(not found for found in self.torsion.values())
+            words += (
+                f" Of {len(self.torsion)} models of torsion {still} {'is' if still == 1 else 'are'} stable"
+            )
+            words += " in the range with its tolerance." if self.file.tolerances.speed else "."
+        words += f" Stable under all of them: {_told(self.always_stable)}."
+        words += f" Unstable under all of them: {_told(self.always_unstable)}."
+        if self.verdict != SAFE:
+            words += f" Worst: {self.mechanism}."
+        open_cases = sum(not outcome.settled for outcome in self.outcomes)
+        if open_cases:
+            words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn them."
+        return words
+
+    @property
+    def mechanism(self) -> str:
+        """What grows fastest of all models, and how."""
+        unstable = [(o.variant.name, tongue) for o in self.outcomes for tongue in o.tongues]
+        unstable += [(f"torsion; {name}", t) for name, found in self.torsion.items() for t in found]
+        if not unstable:
+            return "nothing grows at the values of the file"
+        name, strongest = max(unstable, key=lambda pair: pair[1].growth_rate)
+        kind = "parametric resonance" if strongest.combination.order > 0 else "flutter of the mean system,"
+        speed = f"{rpm(strongest.peak):.4g} rpm"
+        return f"{kind} {strongest.label} at {speed}, growing by {strongest.growth_rate:.3g} 1/s ({name})"
+
+    @property
+    def over_tolerances(self) -> tuple[str, ...]:
+        """What the tolerances of the file make of its own contact and teeth, a sentence for each force."""
+        given = self.file.tolerances
+        disk = {"stiffness": given.stiffness, "damping": given.damping, "speed": given.speed}
+        torsion = {"stiffness of teeth": given.stiffness, "damping of teeth": given.damping}
+        torsion |= {"stiffness of shafts": given.shaft_stiffness, "damping of shafts": given.shaft_damping}
+        torsion |= {"speed": given.speed}
+        found = []
+        for force, case in self.worst.items():
+            parts = torsion if force == TORSION else disk
+            ranges = ", ".join(f"{name} ±{100 * part:g} %" for name, part in parts.items() if part)
+            if case.unknown:
+                words = f"not known ({case.unknown})"
+            elif case.is_stable:
+                words = "stable for all values"
+            elif case.swept:
+                words = (
+                    f"unstable for some values at {_told(case.swept)}, {100 * case.share:.3g} % of the speeds"
+                )
+            else:
+                speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
+                words = f"stable at all corners; tongues open between them at {speeds} rpm"
+            found.append(f"With {ranges}, {force}: {words}.")
+        return tuple(found)
+
+    @property
+    def static_force(self) -> float:
+        """Whole force between the teeth of a mesh at rest [N]."""
+        return self.file.requirements.pinion_torque / self.file.drive.base_radius
+
+    @property
+    def dynamic_load(self) -> str:
+        """Largest force of a tooth pair over speed in torsion, against that at rest, in words; empty if not known."""
+        if self.response is None:
+            return ""
+        known = self.response.dropna("speed", subset=["force_highest"])
+        if not known.sizes["speed"]:
+            return "In torsion it is unstable at all speeds looked at: there is no steady load of the teeth."
+        highest = known["force_highest"].max("load")
+        at = int(highest.argmax("speed"))
+        largest, speed = float(highest[at]), float(highest.speed[at])
+        parted = int((known["force_lowest"].min("load") < 0.0).sum())
+        count, every = known.sizes["speed"], self.response.sizes["speed"]
+        return (
+            f"In torsion, at {count} of {every} speeds where it is stable, and as long as flanks do not part, a tooth "
+            f"pair bears up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / self.static_force:.3g} times the "
+            f"whole static force of {self.static_force:.4g} N. At {parted} of these {count} speeds flanks would part."
+        )
+
+    @property
+    def forced(self) -> tuple[str, ...]:
+        """Forced response of the disk in words: how far the force of a mesh departs from that at rest, or why not."""
+        return disk_response.sentences(self.disk_responses, self.static_force)
+
+    @property
+    def response_table(self) -> xr.Dataset | None:
+        """Forced response of the disk as arrays (:func:`facegear.drives.disk_response.response_table`)."""
+        return disk_response.response_table(self.disk_responses, describe(self.file))
+
+    @property
+    def torsion_table(self) -> xr.Dataset | None:
+        """Steady response of the gearbox as arrays: forces of each tooth pair [N] over speed; None without one."""
+        if self.response is None:
+            return None
+        forces = {name: self.response[f"force_{name}"] for name in ("mean", "rms", "lowest", "highest")}
+        return xr.Dataset(
+            {
+                f"force_{name}": variable(
+                    ("speed", "pair"),
+                    part.values,
+                    f"Force of a tooth pair, {name}",
+                    "N",
+                    rtol=1e-6,
+                    atol=1e-6,
+                )
+                for name, part in forces.items()
+            },
+            {
+                "speed": (
+                    "speed",
+                    self.response.speed.values,
+                    {"units": "rad/s", "long_name": "Speed of the face gear"},
+                ),
+                "pair": np.arange(self.response.sizes["load"]),
+            },
+            {"parameters": describe(self.file)},
+        )
+
+    @property
+    def not_varied(self) -> str:
+        """What no model includes."""
+        return (
+            "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
+            "temperature; tolerances are those of the file's own contact and teeth, and of its own arm in torsion; "
+            "the driving force is the same at all speeds, and speeds outside the range and its tolerance are not "
+            "looked at."
+        )
+
+    def table(self) -> xr.Dataset:
+        """All models and what they come to, as arrays.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over ``model``: ``unstable_share`` [-], ``largest_growth`` [1/s], ``tongues``, ``settled``; names of
+            contact, force and teeth as coordinates.
+        """
+        names = {
+            name: text("model", [getattr(o.variant, name) for o in self.outcomes], words)
+            for name, words in (("contact", "Contact"), ("force", "Driving force"), ("teeth", "Teeth"))
+        }
+        shares = [unstable_share(o.tongues, self.speeds) for o in self.outcomes]
+        growth = [o.growth_rate for o in self.outcomes]
+        count = [float(len(o.tongues)) for o in self.outcomes]
+        settled = [float(o.settled) for o in self.outcomes]
+        return xr.Dataset(
+            {
+                "unstable_share": variable("model", shares, "Unstable part of the speeds", "1", atol=1e-7),
+                "largest_growth": variable(
+                    "model", growth, "Largest growth rate", "1/s", rtol=1e-6, atol=1e-6
+                ),
+                "tongues": variable("model", count, "Number of tongues", "1", atol=0.1),
+                "settled": variable("model", settled, "1 where the basis suffices", "1", atol=0.1),
+            },
+            {"model": np.arange(len(self.outcomes)), **names},
+            {"parameters": describe(self.file)},
+        )
+
+
+def _intervals(found: Sequence[Tongue]) -> Intervals:
+    return tuple((tongue.lower, tongue.upper) for tongue in found)
+
+
+def _told(intervals: Intervals) -> str:
+    return in_rpm(intervals, _NAMED) if intervals else "no speed"
+
+
+def _listed(words: Sequence[str]) -> str:
+    *others, last = words or ("the values taken",)
+    return f"{', '.join(others)} and {last}" if others else last

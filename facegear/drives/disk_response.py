@@ -1,0 +1,349 @@
+"""Forced response of the disk: what the teeth's own giving way under the load of the drive makes of the mesh force.
+
+Under a constant force teeth give way by the static transmission error. While they turn it changes, as pairs come and go
+and their lines grow and shrink, and so it shakes disk and pinions, at speeds where nothing grows by itself as well. The
+springs of the teeth feel what it departs from its mean. Flanks are conjugate and without errors of their own: where
+nothing gives way, or everything evenly, there is no transmission error, and that is said.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+from facegear.drives.basis import unstable_share, with_basis
+from facegear.drives.outcome import Outcome
+from facegear.drives.variants import Variant
+from facegear.floquet.models import Coordinate, system_at
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
+from facegear.maps.response_map import frequency_response
+from facegear.mechanics.disk import modal_mass
+from facegear.mechanics.transverse import FaceGears
+from facegear.support.labelled import text, variable
+from facegear.support.parameters import rpm
+from facegear.support.types import FloatArray
+
+RIGID = "rigid teeth do not give way, and conjugate flanks without errors turn the gear evenly"
+UNLOADED = "without load nothing gives way, and conjugate flanks without errors turn the gear evenly"
+EVEN = "all pairs together are as stiff at all times, so that they give way evenly"
+_TWO_GEARS = "between two gears, where flanks press on both sides of a tooth, it is not computed"
+
+# Part of what teeth give way below which a change of it is rounding.
+_ROUNDING = 1e-9
+# Nodal circles of the response. A third one changed the forces of Case I at fifteen speeds by 4 % at most, two nodal
+# diameters by tens of percent at some; it takes twice as long.
+_CIRCLES = 2
+# Part of its speed to which a resonance is found.
+_RESOLUTION = 1e-4
+# Part of the speeds that may be unstable: where little is steady there is little to say.
+_MOST_UNSTABLE = 0.5
+
+RESPONSE_SPEEDS = 46
+"""Speeds of a forced response of the disk, besides those at which the mesh meets a natural frequency between them."""
+
+
+@dataclass(frozen=True)
+class Shaken:
+    """A face gear under the static transmission error of its teeth, each pinion's in the phase of its mesh.
+
+    Parameters
+    ----------
+    model : FaceGears
+        One gear with its pinions, each with as many loads.
+    error : PiecewiseChebyshev
+        Of a pinion at angle 0, along the gear's axis [m], against t/T0.
+    """
+
+    model: FaceGears
+    error: PiecewiseChebyshev
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Those of the model."""
+        return self.model.coordinates
+
+    @cached_property
+    def errors(self) -> tuple[PiecewiseChebyshev, ...]:
+        """Transmission error of each pinion."""
+        return tuple(self.error.shift(phase) for phase in self.model.gear.mesh_phases)
+
+    def meshes(self, loads: int) -> tuple[range, ...]:
+        """Numbers of the loads of each pinion, of so many in all."""
+        pairs = loads // len(self.errors)
+        return tuple(range(first, first + pairs) for first in range(0, loads, pairs))
+
+    def system(self, speed: float) -> PeriodicSystem:
+        """Equations of motion at a constant speed [rad/s]."""
+        system = system_at(self.model, speed)
+        loads = list(system.loads)
+        for error, mesh in zip(self.errors, self.meshes(len(loads)), strict=True):
+            for number in mesh:
+                loads[number] = replace(loads[number], transmission_error=error)
+        return replace(system, loads=tuple(loads))
+
+
+@dataclass(frozen=True, eq=False)
+class DiskResponse:
+    """Forced response of a model of the disk, or why there is none.
+
+    Attributes
+    ----------
+    variant : Variant
+    error : float
+        Static transmission error along the line of action, from lowest to highest [m]; 0 where there is none.
+    data : xarray.Dataset or None
+        Of :func:`facegear.maps.response_map.frequency_response`, the force of all tooth pairs of each mesh along the
+        normal [N], without the static one.
+    reason : str
+        Why there is none; empty where there is one.
+    before : float
+        By how much the force departs from the static one at most, as :attr:`largest`, in a basis with two nodal
+        diameters fewer [N]; NaN where there is none.
+    """
+
+    variant: Variant
+    error: float
+    data: xr.Dataset | None
+    reason: str
+    before: float = math.nan
+
+
+def _largest(data: xr.Dataset) -> tuple[float, float]:
+    """By how much the force of a mesh departs from the static one at most [N], and at which speed [rad/s]."""
+    known = data.dropna("speed", subset=["force_highest"])
+    speeds = np.concatenate([np.repeat(known.speed.values, known.sizes["load"]), data["peak_speed"].values])
+    ends = [
+        np.concatenate([known[f"force_{end}"].values.ravel(), data[f"peak_force_{end}"].values])
+        for end in ("lowest", "highest")
+    ]
+    departs = np.abs(ends).max(axis=0)
+    if not departs.size:
+        return math.nan, math.nan
+    at = int(departs.argmax())
+    return float(departs[at]), float(speeds[at])
+
+
+def transmission_error(variant: Variant, force: float) -> PiecewiseChebyshev | str:
+    """Find what the static transmission error of a model departs from its mean, or say why it does not.
+
+    Parameters
+    ----------
+    variant : Variant
+    force : float
+        Of all pairs of a mesh along the normal [N].
+
+    Returns
+    -------
+    PiecewiseChebyshev or str
+        Along the line of action [m], of a pinion at angle 0; or a sentence.
+    """
+    gear = variant.model.gear
+    if len(variant.model.driving) > 1:
+        return _TWO_GEARS
+    # A pair alone, where teeth give way at all.
+    stiffness = getattr(gear, "mesh_stiffness", None)
+    if stiffness is None:
+        return RIGID
+    path = gear.contact.path(gear.body.drive, gear.contact.contact_ratio)
+    if (loaded := getattr(path, "contact", None)) is not None:
+        error = loaded.excitation
+    elif (shared := getattr(path, "transmission_error", None)) is not None:
+        error = _without_mean(shared(force / stiffness))
+    else:
+        return EVEN if path.has_lengths else UNLOADED
+    return EVEN if error.largest <= _ROUNDING * force / stiffness else error
+
+
+def _without_mean(error: PiecewiseChebyshev) -> PiecewiseChebyshev:
+    coefficients = error.coefficients.copy()
+    coefficients[:, 0] -= fourier_series(error, error.breakpoints, 1).mean
+    return PiecewiseChebyshev(error.breakpoints, coefficients)
+
+
+def disk_response(outcome: Outcome, force: float, speeds: FloatArray) -> DiskResponse:
+    """Find the forced response of one model, with at most two nodal circles.
+
+    Parameters
+    ----------
+    outcome : Outcome
+    force : float
+        Of all pairs of a mesh along the normal, at rest [N].
+    speeds : array, shape (S,)
+        [rad/s], ascending.
+
+    Returns
+    -------
+    DiskResponse
+    """
+    variant = outcome.variant
+    try:
+        error = transmission_error(variant, force)
+        if isinstance(error, str):
+            return DiskResponse(variant, 0.0, None, error)
+        size = _swing(error)
+        share = unstable_share(outcome.tongues, (float(speeds[0]), float(speeds[-1])))
+        if share > _MOST_UNSTABLE:
+            few = f"nothing is steady at {100 * share:.3g} % of the speeds, where it is unstable"
+            return DiskResponse(variant, size, None, few)
+        body = variant.model.gear.body
+        circles, diameters = min(body.nodal_circles, _CIRCLES), body.nodal_diameters
+        model = with_basis(variant.model, circles, diameters)
+        data, before = normal_forces(model, error, speeds), math.nan
+        if diameters > 2:
+            fewer = with_basis(variant.model, circles, diameters - 2)
+            before = _largest(normal_forces(fewer, error, speeds))[0]
+        return DiskResponse(replace(variant, model=model), size, data, "", before)
+    except (ArithmeticError, ValueError) as problem:
+        return DiskResponse(variant, 0.0, None, str(problem))
+
+
+def normal_forces(model: FaceGears, error: PiecewiseChebyshev, speeds: FloatArray) -> xr.Dataset:
+    """Steady response to a transmission error: forces of whole meshes along the normal [N].
+
+    Parameters
+    ----------
+    model : FaceGears
+        One gear; its pinions on the springs of their teeth.
+    error : PiecewiseChebyshev
+        Of a pinion at angle 0, along the line of action [m].
+    speeds : array, shape (S,)
+        [rad/s], ascending.
+
+    Returns
+    -------
+    xarray.Dataset
+        As :func:`facegear.maps.response_map.frequency_response`, "load" numbering the pinions.
+    """
+    body = model.gear.body
+    # A deflection w along the axis closes the teeth by w sin α_c; of their force the part sin α_c is along the axis.
+    along_axis = math.sin(body.drive.pressure_angle)
+    shaken = Shaken(model, error.transformed([[1.0 / along_axis]]))
+    meshes = shaken.meshes(len(shaken.system(float(speeds[0])).loads))
+    found = frequency_response(
+        shaken, speeds, together=meshes, resolution=_RESOLUTION, jobs=1, progress=False
+    )
+    # Models of the disk are divided by 2πρh, as (4-8).
+    scale = modal_mass(body) / along_axis
+    names = [str(name) for name in found.data_vars if "force" in str(name)]
+    return found.assign({name: found[name] * scale for name in names})
+
+
+def _swing(error: PiecewiseChebyshev) -> float:
+    """From the lowest to the highest value over a period."""
+    edges = np.append(error.breakpoints, 1.0)
+    inside = np.linspace(0.0, 1.0, 65)[:-1]
+    values = error((edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * inside).ravel())
+    return float(np.ptp(np.concatenate([values, error(edges[1:-1], "left")])))
+
+
+# --- what is said of them -----------------------------------------------------------------------------------------
+
+
+def sentences(found: Sequence[DiskResponse], static: float) -> tuple[str, ...]:
+    """Say how far the force of a mesh departs from its static value [N], and of which models it does not, and why."""
+    told = [_sentence(each, each.data, static) for each in found if each.data is not None]
+    missing: dict[str, list[str]] = {}
+    for each in found:
+        if each.data is None:
+            missing.setdefault(each.reason, []).append(f"{each.variant.teeth}; {each.variant.force}")
+    if missing and not told:
+        told.append("No model of the disk with the file's own contact has a forced response.")
+    for reason, names in missing.items():
+        told.append(f"No forced response of the disk ({'; '.join(dict.fromkeys(_joined(names)))}): {reason}.")
+    return tuple(told)
+
+
+def _joined(names: Sequence[str]) -> list[str]:
+    """Name teeth without the direction of the force where both are there."""
+    teeth = [name.partition("; ")[0] for name in names]
+    return [
+        kind if teeth.count(kind) > 1 else name.replace("; ", " and ")
+        for kind, name in zip(teeth, names, strict=True)
+    ]
+
+
+def _sentence(found: DiskResponse, data: xr.Dataset, static: float) -> str:
+    variant = found.variant
+    known = data.dropna("speed", subset=["force_highest"])
+    where = f"{variant.contact}; {variant.force}; {variant.teeth}"
+    if not known.sizes["speed"]:
+        return f"Forced response of the disk ({where}): unstable at all speeds looked at, nothing is steady."
+    largest, speed = _largest(data)
+    parted = int((known["force_lowest"].min("load").values < -static).sum())
+    count, every = known.sizes["speed"], data.sizes["speed"]
+    resonance = ""
+    if data.sizes["peak"]:
+        top = int(data["peak_force_rms"].values.argmax())
+        place = float(rpm(data["peak_speed"].values[top]))
+        resonance = f"; its strongest resonance is {data['peak_label'].values[top]} at {place:.4g} rpm"
+    before = ""
+    if math.isfinite(found.before):
+        before = f" In a basis with two nodal diameters fewer it would be {found.before:.4g} N."
+    return (
+        f"Forced response of the disk ({where}): a static transmission error of {1e6 * found.error:.3g} µm from peak "
+        f"to peak, under the load of the drive, and as long as flanks do not part, moves the force of a "
+        f"mesh by up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / static:.3g} times the static {static:.4g} "
+        f"N{resonance}.{before} Of {every} speeds it is stable at "
+        f"{count}, and flanks would part at {parted}."
+    )
+
+
+def response_table(found: Sequence[DiskResponse], parameters: str) -> xr.Dataset | None:
+    """Put forced responses into arrays, those without one as NaN with the reason; None if no model has one.
+
+    Parameters
+    ----------
+    found : sequence of DiskResponse
+    parameters : str
+        Of the drive, for provenance.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        Over ``model``, ``speed`` [rad/s] and ``pinion``: ``force_rms``, ``force_lowest``, ``force_highest``, forces of
+        a whole mesh along the normal without the static one [N]; over ``model``: ``transmission_error`` [m].
+    """
+    computed = [each.data for each in found if each.data is not None]
+    if not computed:
+        return None
+    first = computed[0]
+    nothing = np.full((first.sizes["speed"], first.sizes["load"]), np.nan)
+
+    def stacked(name: str) -> FloatArray:
+        return np.stack([nothing if each.data is None else each.data[name].values for each in found])
+
+    dims = ("model", "speed", "pinion")
+    meanings = {
+        "force_rms": "Rms of what varies of the force of a mesh",
+        "force_lowest": "Lowest force of a mesh less the static one",
+        "force_highest": "Highest force of a mesh less the static one",
+    }
+    swings = [each.error for each in found]
+    name = "Static transmission error from peak to peak, along the line of action"
+    labels = {
+        key: text("model", [getattr(each.variant, key) for each in found], words)
+        for key, words in (("contact", "Contact"), ("force", "Driving force"), ("teeth", "Teeth"))
+    }
+    return xr.Dataset(
+        {
+            **{
+                key: variable(dims, stacked(key), words, "N", rtol=1e-6, atol=1e-6)
+                for key, words in meanings.items()
+            },
+            "transmission_error": variable("model", swings, name, "m", rtol=1e-6, atol=1e-15),
+        },
+        {
+            "model": np.arange(len(found)),
+            "speed": ("speed", first.speed.values, {"units": "rad/s", "long_name": "Speed of the face gear"}),
+            "pinion": np.arange(first.sizes["load"]),
+            **labels,
+            "none_because": text("model", [each.reason for each in found], "Why there is none"),
+        },
+        {"parameters": parameters},
+    )

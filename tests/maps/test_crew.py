@@ -1,0 +1,74 @@
+"""Tasks that bring others along, over processes: order, errors, interruptions."""
+
+import os
+import time
+
+import psutil
+import pytest
+
+from facegear.maps.crew import Crew
+
+
+def waited(seconds):
+    time.sleep(seconds)
+    return os.getpid()
+
+
+def broken():
+    raise ArithmeticError("nothing is known")
+
+
+def test_in_this_process_the_most_urgent_first_then_the_first_added():
+    crew, found = Crew(jobs=1), []
+    for name, urgency in (("last", 0.0), ("first", 9.0), ("second", 5.0), ("third", 5.0)):
+        crew.add(name, urgency, waited, 0.0)
+    for name, process in crew.results():
+        found.append(name)
+        assert process == os.getpid()
+        if name == "second":
+            crew.add("brought along", 7.0, waited, 0.0)
+    assert found == ["first", "second", "brought along", "third", "last"]
+
+
+def test_what_comes_of_a_short_task_does_not_wait_for_a_long_one():
+    with Crew(jobs=2) as crew:
+        crew.add("start", 9.0, waited, 0.0)
+        # Both processes are there.
+        assert next(crew.results())[0] == "start"
+        crew.add("long", 9.0, waited, 3.0)
+        crew.add("short", 8.0, waited, 0.0)
+        found = []
+        for name, process in crew.results():
+            found.append(name)
+            assert process != os.getpid()
+            if name == "short":
+                crew.add("of the short one", 0.0, waited, 0.0)
+    assert found == ["short", "of the short one", "long"]
+
+
+def test_an_error_of_a_task_is_raised_and_no_process_is_left_at_work():
+    def run():
+        with Crew(jobs=2) as crew:
+            crew.add("long", 1.0, waited, 60.0)
+            crew.add("broken", 0.5, broken)
+            list(crew.results())
+
+    started = time.perf_counter()
+    with pytest.raises(ArithmeticError, match="nothing is known"):
+        run()
+    assert time.perf_counter() - started < 50.0
+    below = psutil.Process().children(recursive=True)
+    _, alive = psutil.wait_procs([p for p in below if "LokyProcess" in " ".join(p.cmdline())], timeout=10.0)
+    assert not alive
+
+
+def test_an_error_in_this_process():
+    crew = Crew(jobs=1)
+    crew.add("broken", 0.5, broken)
+    with pytest.raises(ArithmeticError, match="nothing is known"):
+        list(crew.results())
+
+
+def test_a_number_of_processes_that_is_none():
+    with pytest.raises(ValueError, match="jobs"):
+        Crew(0)
