@@ -74,12 +74,16 @@ class Problem:
         """Spectral radii of the sample."""
         return [abs(multipliers(self.system(*cell), AdaptiveMagnus(1e-12))[0]) for cell in self.sample]
 
+    @cached_property
+    def periods(self) -> Array:
+        """T0 of each column, by which growth rates become radii: known beforehand, as the numbers of heyoka's cells."""
+        return np.array([self.system(column, 0).period for column in range(self.speeds.size)])
+
     def package(self, step: int = 1) -> Array:
         """Spectral radii of all cells, or of those at every so many speeds."""
         speeds = self.speeds[::step]
         chart = stability_map(self.model, speeds, self.parameter, self.values, jobs=1, progress=False)
-        periods = [self.system(column, 0).period for column in range(0, self.speeds.size, step)]
-        return np.exp(chart.to_numpy() * periods)
+        return np.exp(chart.to_numpy() * self.periods[::step])
 
     def whole(self, route: str, run: Callable[[], Array]) -> Row:
         """Time a route on all cells."""

@@ -44,6 +44,8 @@ _SLOWEST = 1e-5
 _MOST_DEPENDENT = 300.0
 # A spring that holds what hangs on nothing lets it oscillate at this part of the fastest frequency at least.
 _SOFTEST = 0.1
+# Instants at which it is seen how mobile a system is under its loads.
+_INSTANTS = 16
 # Rounds of halving before a system is refused.
 _MOST_HALVINGS = 8
 # Parts of a period beyond which a motion is too fast to follow.
@@ -250,10 +252,10 @@ class _Panels:
 
 def _in_place(chosen: NDArray[np.bool_], whole: FloatArray, halves: FloatArray, axis: int) -> FloatArray:
     """Put halves, two for each chosen entry along an axis, in the place of these entries."""
-    new = np.repeat(chosen, 1 + chosen)
-    kept = np.count_nonzero(~chosen)
-    place = np.where(new, kept + np.cumsum(new), np.cumsum(~new)) - 1
-    return np.concatenate([whole.compress(~chosen, axis), halves], axis).take(place, axis)
+    twice = 1 + chosen
+    found = whole.take(np.repeat(np.arange(chosen.size), twice), axis)
+    found[(slice(None),) * axis + (np.repeat(chosen, twice),)] = halves
+    return found
 
 
 def _split(matrix: ComplexArray) -> FloatArray:
@@ -313,10 +315,12 @@ class Nodes:
             found = _at_nodes(systems, part, fractions)
             return found.reshape(len(found), count * nodes * p, n)
 
+        shape = (systems_, count, nodes, p, n)
+
         def readings(by: FloatArray, factors: ComplexArray) -> ComplexArray:
             # Real times complex as one product of real matrices, which takes half as long.
             pairs = by @ np.ascontiguousarray(factors).view(float)
-            return np.asarray(pairs.view(complex).reshape(systems_, count, nodes, p, n), dtype=complex)
+            return np.asarray(pairs.view(complex).reshape(shape), dtype=complex)
 
         phi = values(lambda load: load.shape)
         weighted = phi
@@ -324,8 +328,9 @@ class Nodes:
             factor = _at_nodes(systems, _weight, fractions)
             weighted = phi * factor.reshape(len(factor), count * nodes * p, 1)
         velocity = modes.velocity
-        acceleration = velocity * modes.eigenvalues[:, None, :]
-        read = np.stack([readings(phi, part) for part in (modes.displacement, velocity, acceleration)])
+        read = np.empty((3, *shape), dtype=complex)
+        read[0], read[1] = readings(phi, modes.displacement), readings(phi, velocity)
+        np.multiply(read[1], modes.eigenvalues[:, None, None, None, :], out=read[2])
         total = np.array([load.rate == "total" for load in systems[0].loads])
         if total.any():
             rate = total[:, None] / periods[:, None, None, None, None]
@@ -401,18 +406,33 @@ def _at_nodes(
     fractions: FloatArray,
 ) -> FloatArray:
     """Values of one function of each load, (S, P, N, p, components), or (1, ...) if all systems share them."""
+    return _at_instants(systems, part, lambda function: function(fractions), fractions.shape)
+
+
+def _at_instants(
+    systems: Sequence[PeriodicSystem],
+    part: Callable[[ContactLoad], PiecewiseChebyshev],
+    values: Callable[[PiecewiseChebyshev], FloatArray],
+    shape: tuple[int, ...] = (),
+) -> FloatArray:
+    """As :func:`_at_nodes`, for values of a function at instants of some shape."""
     functions = [[part(load) for load in system.loads] for system in systems]
     if all(own is first for row in functions[1:] for own, first in zip(row, functions[0], strict=True)):
         functions = functions[:1]
     if not functions[0]:
-        return np.empty((1, *fractions.shape, 0, systems[0].size))
-    return np.stack([np.stack([function(fractions) for function in row], axis=-2) for row in functions])
+        return np.empty((1, *shape, 0, systems[0].size))
+    return np.stack([np.stack([values(function) for function in row], axis=-2) for row in functions])
+
+
+@lru_cache(maxsize=64)
+def _sampled(function: PiecewiseChebyshev) -> FloatArray:
+    """Values at instants spread over the period."""
+    return function(np.linspace(0.0, 1.0, _INSTANTS, endpoint=False))
 
 
 def mobilities(systems: Sequence[PeriodicSystem]) -> FloatArray:
     """Return the largest φᵀM⁻¹φ of each load, at sampled instants, shape (V, p)."""
-    samples = np.linspace(0.0, 1.0, 16, endpoint=False)
-    shapes = _at_nodes(systems, lambda load: load.shape, samples)
+    shapes = _at_instants(systems, lambda load: load.shape, _sampled, (_INSTANTS,))
     mass = np.stack([system.mass for system in systems])[:, None]
     moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
     return np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
@@ -659,13 +679,15 @@ class FreeMotion:
         """Left and right side of the equations for the contact forces, (V, P, N p, N p) and (V, P, N p, 2n)."""
         size = panels.input.shape[-1]
         count = parameters.shape[1]
-        left = np.broadcast_to(np.eye(size), (count, *panels.force_on_force.shape[2:])).copy()
+        left = np.zeros((count, *panels.force_on_force.shape[2:]))
         right = np.zeros((count, *panels.force_on_state.shape[2:]))
         for order, values in enumerate(parameters):
             if values.any():
                 factor = np.tile(values, (1, size // values.shape[1]))[:, None, :, None]
                 left += factor * panels.force_on_force[order]
                 right += factor * panels.force_on_state[order]
+        number = np.arange(size)
+        left[..., number, number] += 1.0
         return left, right
 
     def transition_matrices_to(self, instants: Sequence[float], column: LoadColumn) -> FloatArray:

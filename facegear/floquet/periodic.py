@@ -518,6 +518,22 @@ def _listed(name: str, values: Any, kind: type) -> tuple[Any, ...]:
     return listed
 
 
+def have_one_course(one: PeriodicSystem, other: PeriodicSystem) -> bool:
+    """Whether all that varies with time is the very same in two systems, as of models that keep their functions.
+
+    Of systems with as many loads, without jumps; others may be alike all the same.
+    """
+    return (
+        not one.jumps
+        and not other.jumps
+        and one.force is other.force
+        and all(
+            a.shape is b.shape and a.weight is b.weight and a.transmission_error is b.transmission_error
+            for a, b in zip(one.loads, other.loads, strict=True)
+        )
+    )
+
+
 def weighted_shape(load: ContactLoad, fraction: ArrayLike, side: Side = "right") -> FloatArray:
     """Return w φ of a load at fractions of the period, shape (..., n)."""
     shape = load.shape(fraction, side)

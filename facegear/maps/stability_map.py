@@ -321,7 +321,7 @@ class _ModelColumn:
         for system in self.probed:
             yield from parts_of(system)
 
-    @property
+    @cached_property
     def probed(self) -> list[PeriodicSystem]:
         """Systems of the first, the middle and the last value."""
         return [model.system(self.speed) for model in self.sweep.probed]

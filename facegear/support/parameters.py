@@ -254,7 +254,7 @@ def finite_array(name: str, values: ArrayLike, unit: str = "") -> FloatArray:
         An entry is NaN or infinite.
     """
     array = _real_array(name, values, unit)
-    if not np.all(np.isfinite(array)):
+    if not np.isfinite(array).all():
         bad = array[~np.isfinite(array)].flat[0]
         raise ValueError(f"{name} must be finite{_in(unit)}, got an entry {_plain(bad)!r}")
     return array
