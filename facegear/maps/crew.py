@@ -10,11 +10,11 @@ from itertools import count
 from types import TracebackType
 from typing import Any
 
-from facegear.maps.parallel import on_one_thread
+from facegear.maps.parallel import begin_as_worker, on_one_thread
 from facegear.support.parameters import number_of_workers
 
-# Seconds after which an idle process ends, as joblib has it.
-_IDLE = 300
+# Seconds after which an idle process ends.
+_IDLE = 60
 
 
 class Crew:
@@ -62,7 +62,11 @@ class Crew:
     def _executor(self) -> Any:
         from joblib.externals.loky import get_reusable_executor
 
-        return get_reusable_executor(max_workers=self._jobs, timeout=_IDLE)
+        executor = get_reusable_executor(max_workers=self._jobs, timeout=_IDLE)
+        # Each is to watch from its first moment whether this process is still there, also while it has no task.
+        for _ in range(self._jobs):
+            executor.submit(begin_as_worker)
+        return executor
 
     def add(self, name: Hashable, urgency: float, function: Callable[..., Any], *arguments: Any) -> None:
         """Add a task: a function defined at the top of a module, and its arguments.
