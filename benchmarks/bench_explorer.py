@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from facegear.drives.cell import cell_detail
-from facegear.drives.explore import Study, map_stages
+from facegear.drives.explore import map_stages
 from facegear.drives.studies.drive import drive_study
 from facegear.drives.studies.gearbox import gearbox_study
 from facegear.drives.studies.oscillator import oscillator_study
+from facegear.drives.studies.study import Study
 from facegear.floquet.models import replace_parameter
 
 CASES: tuple[tuple[str, Study, str, Mapping[str, Any]], ...] = (

@@ -37,9 +37,9 @@ from .mechanics.paths import loaded_contact as loaded_contact
 from .mechanics.paths import point_contact as point_contact
 from .mechanics.plate import Body as Body
 from .mechanics.sharing import shared_load as shared_load
+from .mechanics.tooth_stiffness import mesh_stiffness as mesh_stiffness
 from .mechanics.torsional import Gearbox as Gearbox
 from .mechanics.torsional import Torsional as Torsional
-from .mechanics.torsional import mesh_stiffness as mesh_stiffness
 from .mechanics.transverse import Transverse as Transverse
 from .mechanics.two_gears import TwoGears as TwoGears
 from .support.parameters import STEEL as STEEL

@@ -6,7 +6,11 @@
   function draw(view) {
     const figure = JSON.parse(view.querySelector('script[type="application/json"]').textContent);
     const target = view.querySelector(".turning-view-canvas");
-    Plotly.newPlot(target, figure.data, figure.layout, { displaylogo: false, responsive: true });
+    Plotly.newPlot(target, figure.data, figure.layout, {
+      displaylogo: false,
+      responsive: true,
+      scrollZoom: false, // the wheel moves the page
+    });
   }
 
   document.addEventListener("DOMContentLoaded", function () {

@@ -1,12 +1,15 @@
 """A drive of one's own: its file, the report on it, the explorer, files for other programs, the command `facegear`.
 
 The file: `drive_file` reads; `drive_keys` has all keys, of which `keys` says what each is, `file_values` checks them
-one by one, `file_teeth` and `file_gearbox` build, `refusals` tells in the file's words what models refuse.
-`drive_text` writes, `drive_schema` tells editors and readers the keys, `new_drive` asks for what a file needs.
-What holds: `basis`, `verdict`, `critical_thickness`, `report_rows`, `report_arrays`; `findings` has all that a report
-shows, `sections` and `page` put it in words, `report_columns` and `report_files` write; `sweeps` are maps over any
-number of a file.
-The explorer: `studies`, `explore` and `cell` compute what it shows, `explorer` and `cell_figure` draw it.
+one by one, `file_teeth` and `file_gearbox` build what they say of `contacts`, `flexible_teeth`, `forces`, `tolerances`,
+`refusals` tells in the file's words what models refuse. `drive_text` writes, `drive_schema` tells editors and readers
+the keys, `new_drive` asks for what a file needs; `examples` come with the package.
+What holds: `basis`, `verdict`, `critical_thickness`, `report_rows`, `report_arrays`, `disk_response`, `play` of the
+teeth, `damage` of one; `findings` has all that a report shows, `sections` and `page` put it in words, `report_columns`
+and `report_files` write; `sweeps` are maps over any number of a file. `assess` asks all `variants` of a model, each an
+`outcome`, for an `assessment` over `intervals` of speed, which `assessment_files` write.
+The explorer: `studies`, `file_study`, `explore` and `cell` compute what it shows, `explorer`, `motion_explorer` and
+`cell_figure` draw it, `live` serves it.
 `export` writes points, meshes, tables. The command: `command`, after `command_line` has understood what is asked for,
 runs one of `commands`.
 Public: `read_drive_file`, `write_drive_file`.

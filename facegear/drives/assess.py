@@ -96,12 +96,13 @@ def assess(
     --------
     At one speed of Case I in the smallest basis there is, to be quick; no basis is said to suffice then.
 
+    >>> import facegear as fg
     >>> from facegear.drives.drive_file import parse_drive
     >>> from facegear.drives.examples import example_text
     >>> text = example_text("case_1").replace("_speed_rpm: 1000", "_speed_rpm: 541")
     >>> text = text.replace("_speed_rpm: 100", "_speed_rpm: 540")
     >>> small = "body:\n  nodal_circles: 0\n  nodal_diameters: 1\n"
-    >>> found = assess(parse_drive(text.replace("body:\n", small)), most_steps=1, jobs=1)
+    >>> found = fg.assess(parse_drive(text.replace("body:\n", small)), most_steps=1, jobs=1)
     >>> found.verdict, found.decides
     ('depends', ('the contact', 'the direction of the driving force', 'the teeth'))
     """

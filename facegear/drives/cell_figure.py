@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from facegear.drives.cell import CellDetail
-from facegear.drives.explore import Quantity
+from facegear.drives.studies.study import Quantity
 from facegear.plotting.style import BLUE, GREEN, GREY, INK, PURPLE, VERMILION, WIDTH, styled
 
 

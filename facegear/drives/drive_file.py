@@ -33,7 +33,8 @@ from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
-from facegear.mechanics.plate import BORE_RATIO_RANGE, Body
+from facegear.mechanics.plate import Body
+from facegear.mechanics.radial_modes import BORE_RATIO_RANGE
 from facegear.mechanics.tooth_damage import DamagedTooth
 from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import FaceGears, Transverse

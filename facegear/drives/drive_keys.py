@@ -12,7 +12,8 @@ from facegear.drives.flexible_teeth import CENTROID, SHARING
 from facegear.drives.forces import PLACES, RIM
 from facegear.drives.keys import PER_SI, Key, Section
 from facegear.geometry.proportions import FEWEST_TEETH
-from facegear.mechanics.plate import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS, THICKNESS_RATIO_RANGE
+from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
+from facegear.mechanics.radial_modes import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS
 from facegear.mechanics.two_gears import DRIVES
 from facegear.support.parameters import STEEL
 

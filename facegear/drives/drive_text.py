@@ -44,11 +44,12 @@ def write_drive_file(file: DriveFile, path: str | Path) -> Path:
     Examples
     --------
     >>> import tempfile
-    >>> from facegear.drives.drive_file import read_drive_file
+    >>> import facegear as fg
+    >>> from facegear.drives.drive_file import parse_drive
     >>> from facegear.drives.examples import example_text
     >>> file = parse_drive(example_text("case_1"))
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     again = read_drive_file(write_drive_file(file, f"{folder}/my_drive.yaml"))
+    ...     again = fg.read_drive_file(fg.write_drive_file(file, f"{folder}/my_drive.yaml"))
     >>> again == file
     True
     """

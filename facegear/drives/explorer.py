@@ -21,7 +21,8 @@ from matplotlib.figure import Figure
 
 from facegear.drives.cell import cell_detail
 from facegear.drives.cell_figure import RING, cell_figure, described, draw_detail, rows
-from facegear.drives.explore import Choice, Control, Quantity, Study, View, map_stages, reading_map, unstable
+from facegear.drives.explore import View, map_stages, reading_map, unstable
+from facegear.drives.studies.study import Choice, Control, Quantity, Study
 from facegear.floquet.models import Model, replace_parameter
 from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, WIDTH, styled
 from facegear.support.types import FloatArray

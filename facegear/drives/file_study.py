@@ -18,9 +18,9 @@ from facegear.drives.drive_file import DriveFile, parse_drive, read_drive_file
 from facegear.drives.drive_keys import SECTIONS
 from facegear.drives.drive_text import drive_text
 from facegear.drives.examples import example_text
-from facegear.drives.explore import Choice, Control, Quantity, Settings, Study
 from facegear.drives.forces import PLACES
 from facegear.drives.keys import Key
+from facegear.drives.studies.study import Choice, Control, Quantity, Settings, Study
 from facegear.drives.verdict import driven
 from facegear.floquet.models import Model
 from facegear.mechanics.edge_stiffness import Following

@@ -14,7 +14,7 @@ from facegear.drives.refusals import built
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.two_gears import Role, fitting_angles
 from facegear.support.parameters import Material
 

@@ -27,8 +27,13 @@ _ADVICE = (findings.power_advice, findings.thickness_advice, findings.change_adv
 
 def number_table(rows: Sequence[Row], caption: str) -> Table:
     """Rows of quantity, value and unit."""
-    shown = tuple((row.quantity, f"{row.value:.6g}", row.unit if row.unit != "1" else "") for row in rows)
+    shown = tuple((row.quantity, _readable(row.value), row.unit if row.unit != "1" else "") for row in rows)
     return Table(("quantity", "value", "unit"), shown, caption)
+
+
+def _readable(value: float) -> str:
+    """Six digits, without a power of ten."""
+    return np.format_float_positional(value, precision=6, fractional=False, trim="-")
 
 
 def verdict(found: Findings) -> Section:
@@ -168,7 +173,7 @@ def origins(found: Findings) -> Section:
     picture = Picture(
         draw.combinations(found.combinations, found.tongue_tables[found.cases[0].name]),
         "Mesh frequency over speed against the natural frequencies of the mean transverse system (pale) and "
-        "those of their combinations that open a tongue (dashed), for the first case.",
+        "those of their combinations that open a tongue (dashed, if there are such), for the first case.",
         "A straight line of mesh frequency crosses dashed curves of combined natural frequencies; thick marks "
         "where it meets them",
     )

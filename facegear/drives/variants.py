@@ -13,7 +13,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID, COMPLIANCE, FlexibleTeeth
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.sharing import RULES
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.transverse import FaceGears, Transverse
 
 RIGID, RIGID_TOTAL = "rigid teeth, frozen rate", "rigid teeth, total rate"

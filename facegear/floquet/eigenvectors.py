@@ -71,6 +71,8 @@ def change(matrices: FloatArray, slopes: FloatArray, least: float = 0.0) -> Chan
     >>> found.values.tolist(), found.direct.round(9).tolist()
     ([[1j]], [[[3j]]])
     """
+    if not np.isfinite(matrices).all():
+        raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
     values, right, left = _vectors(matrices, least)
     # (Re w, Im w) S (Re v, Im v) in real numbers: four products a pair of vectors.
     parts = _products((_rows(left) @ slopes).reshape(left.shape), right)

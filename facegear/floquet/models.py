@@ -147,11 +147,11 @@ class Excited:
 
     Examples
     --------
+    >>> import facegear as fg
     >>> import numpy as np
-    >>> from facegear.floquet.piecewise import PiecewiseChebyshev
     >>> from facegear.mechanics.classical import Mathieu
-    >>> wave = PiecewiseChebyshev.fit(lambda x, piece: 1e-6 * np.cos(2.0 * np.pi * x), [0.0])
-    >>> (load,) = Excited(Mathieu(depth=0.2), transmission_error=wave).system(0.7).loads
+    >>> wave = fg.PiecewiseChebyshev.fit(lambda x, piece: 1e-6 * np.cos(2.0 * np.pi * x), [0.0])
+    >>> (load,) = fg.Excited(Mathieu(depth=0.2), transmission_error=wave).system(0.7).loads
     >>> load.transmission_error is wave
     True
     """

@@ -242,8 +242,9 @@ def steady_response(
     --------
     An oscillator under a constant force rests at force over stiffness.
 
-    >>> pushed = PeriodicSystem([[1.0]], [[0.1]], [[4.0]], (), 2.0, force=PiecewiseChebyshev.constant([2.0]))
-    >>> steady_response(pushed).displacements([0.0, 0.3]).round(12)
+    >>> import facegear as fg
+    >>> pushed = fg.PeriodicSystem([[1.0]], [[0.1]], [[4.0]], (), 2.0, force=fg.PiecewiseChebyshev.constant([2.0]))
+    >>> fg.steady_response(pushed).displacements([0.0, 0.3]).round(12)
     array([[0.5],
            [0.5]])
     """

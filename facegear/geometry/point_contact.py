@@ -51,7 +51,8 @@ class UnloadedContact:
 
     Examples
     --------
-    >>> contact = UnloadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27))
+    >>> import facegear as fg
+    >>> contact = fg.UnloadedContact(fg.Drive(26, 130, 3.175e-3, shaper_teeth=27))
     >>> round(1e3 * contact.position, 3), round(contact.contact_ratio, 6)
     (206.375, 1.557364)
     """

@@ -10,11 +10,11 @@ from itertools import count
 from types import TracebackType
 from typing import Any
 
-from facegear.maps.parallel import on_one_thread
+from facegear.maps.parallel import begin_as_worker, on_one_thread
 from facegear.support.parameters import number_of_workers
 
-# Seconds after which an idle process ends, as joblib has it.
-_IDLE = 300
+# Seconds after which an idle process ends.
+_IDLE = 60
 
 
 class Crew:
@@ -54,15 +54,20 @@ class Crew:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: BaseException | TracebackType | None) -> None:
-        """Leave no process at work after an error or an interruption."""
-        if kind is not None and "_executor" in vars(self):
-            self._executor.shutdown(wait=True, kill_workers=True)
+        """End all processes, after an error or an interruption at once."""
+        if "_executor" in vars(self):
+            self._executor.shutdown(wait=True, kill_workers=kind is not None)
 
     @cached_property
     def _executor(self) -> Any:
-        from joblib.externals.loky import get_reusable_executor
+        # Processes of its own: those that joblib keeps for its next call are no others' to submit to.
+        from joblib.externals.loky import ProcessPoolExecutor
 
-        return get_reusable_executor(max_workers=self._jobs, timeout=_IDLE)
+        executor = ProcessPoolExecutor(max_workers=self._jobs, timeout=_IDLE)
+        # Each is to watch from its first moment whether this process is still there, also while it has no task.
+        for _ in range(self._jobs):
+            executor.submit(begin_as_worker)
+        return executor
 
     def add(self, name: Hashable, urgency: float, function: Callable[..., Any], *arguments: Any) -> None:
         """Add a task: a function defined at the top of a module, and its arguments.

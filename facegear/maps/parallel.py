@@ -148,13 +148,13 @@ def each_in_processes(function: Callable[..., T], work: Iterable[tuple[Any, ...]
 
 def on_one_thread(function: Callable[..., T], *arguments: Any) -> T:
     """Call a function on one thread: the matrices are too small to share."""
-    _begin_as_worker()
+    begin_as_worker()
     with one_thread():
         return function(*arguments)
 
 
 @cache
-def _begin_as_worker() -> None:
+def begin_as_worker() -> None:
     """Let this process, if joblib started it on this machine, leave nothing behind when it is ended.
 
     It ends within a second after the process that started it has gone; joblib's own workers go on when their parent is

@@ -91,12 +91,12 @@ def frequency_response(
 
     Examples
     --------
-    >>> from facegear.floquet.models import Excited
-    >>> from facegear.floquet.piecewise import PiecewiseChebyshev
+    >>> import facegear as fg
+    >>> import numpy as np
     >>> from facegear.mechanics.classical import Mathieu
-    >>> wave = PiecewiseChebyshev.fit(lambda x, piece: np.cos(2.0 * np.pi * x), [0.0])
-    >>> model = Excited(Mathieu(depth=0.1, damping_ratio=0.1), transmission_error=wave)
-    >>> found = frequency_response(model, np.linspace(0.6, 1.5, 19), jobs=1)
+    >>> wave = fg.PiecewiseChebyshev.fit(lambda x, piece: np.cos(2.0 * np.pi * x), [0.0])
+    >>> model = fg.Excited(Mathieu(depth=0.1, damping_ratio=0.1), transmission_error=wave)
+    >>> found = fg.frequency_response(model, np.linspace(0.6, 1.5, 19), jobs=1)
     >>> found.peak_label.values.tolist()
     ['1/1']
     """
@@ -108,14 +108,15 @@ def frequency_response(
     found = _computed([model], speeds, asked, jobs, progress, cache_directory)[0]
     _require_some(found, model, float(speeds[0]), method)
     between = _resonances_between(model, speeds, resolution)
-    at = np.concatenate([speeds, between])
+    # Looked for coarsely, a resonance may be where one of the speeds is.
+    at, where = np.unique(np.concatenate([speeds, between]), return_index=True)
     every = np.concatenate([found, _computed([model], between, asked, jobs, progress, cache_directory)[0]])
     dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, asked)
     dataset.attrs["peaks"] = (
         "local maxima that show at the speeds, or where one of the first six harmonics of the mesh meets a natural "
         "frequency of the mean system; none at the first and last speed"
     )
-    return dataset.assign(_peaks(model, np.sort(at), every[np.argsort(at)], asked, resolution))
+    return dataset.assign(_peaks(model, at, every[where], asked, resolution))
 
 
 @one_thread()

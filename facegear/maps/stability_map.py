@@ -131,12 +131,9 @@ def stability_map(
 
     Examples
     --------
-    >>> from facegear.geometry.drive import Drive
-    >>> from facegear.support.parameters import MeshLoad, rad_per_s
-    >>> from facegear.mechanics.plate import Body
-    >>> from facegear.mechanics.transverse import Transverse
-    >>> model = Transverse(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0))
-    >>> chart = stability_map(model, rad_per_s([300.0, 600.0]), "stiffness", [0.5, 1.0], jobs=1)
+    >>> import facegear as fg
+    >>> model = fg.Transverse(fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03), fg.MeshLoad(1.0, 3e-6, 1.0))
+    >>> chart = fg.stability_map(model, fg.rad_per_s([300.0, 600.0]), "stiffness", [0.5, 1.0], jobs=1)
     >>> chart.dims
     ('stiffness', 'speed')
     """

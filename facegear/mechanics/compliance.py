@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from facegear.mechanics.slices import Slices
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.support.parameters import Material
 from facegear.support.types import FloatArray
 

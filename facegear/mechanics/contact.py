@@ -65,8 +65,9 @@ class Contact:
 
     Examples
     --------
-    >>> contact = Contact(contact_ratio=1.6)
-    >>> [place] = contact.places(Drive(26, 130, 3.175e-3))
+    >>> import facegear as fg
+    >>> contact = fg.Contact(contact_ratio=1.6)
+    >>> [place] = contact.places(fg.Drive(26, 130, 3.175e-3))
     >>> place.position(0.0).shape
     (2,)
     """

@@ -18,7 +18,8 @@ from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
 from facegear.floquet.models import Coordinate
-from facegear.mechanics.plate import Body, RadialModes, centrifugal_stiffness
+from facegear.mechanics.plate import Body
+from facegear.mechanics.radial_modes import RadialModes, centrifugal_stiffness
 from facegear.support.parameters import finite_array, positive, rad_per_s
 from facegear.support.types import FloatArray
 

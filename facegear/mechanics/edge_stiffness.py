@@ -18,9 +18,10 @@ from facegear.floquet.series import ChebyshevSeries
 from facegear.geometry.drive import Drive
 from facegear.mechanics.disk import mirror_signs, unit_shape
 from facegear.mechanics.inplane import EdgeLoadStress, fastest_speed
-from facegear.mechanics.plate import Body, plate_quadrature
+from facegear.mechanics.plate import Body
 from facegear.mechanics.pressed_points import Spread, points_on, require_spread
 from facegear.mechanics.pressed_stiffness import pressed_stiffness
+from facegear.mechanics.radial_modes import plate_quadrature
 from facegear.mechanics.spreads import RIM_POINT
 from facegear.support.parameters import (
     designed,
@@ -257,8 +258,8 @@ class DrivingForce:
 
     Examples
     --------
-    >>> from facegear.geometry.drive import Drive
-    >>> round(DrivingForce(power=447.42e3, pinion_speed=523.6).newtons(Drive(26, 130, 3.175e-3)))
+    >>> import facegear as fg
+    >>> round(fg.DrivingForce(power=447.42e3, pinion_speed=523.6).newtons(fg.Drive(26, 130, 3.175e-3)))
     20703
     """
 

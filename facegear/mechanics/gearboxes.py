@@ -14,7 +14,8 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from facegear.geometry.drive import Drive
-from facegear.mechanics.torsional import Gearbox, Torsional, cylinder_inertia, mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
+from facegear.mechanics.torsional import Gearbox, Torsional, cylinder_inertia
 from facegear.support.parameters import STEEL, designed, keep, nonnegative, positive
 
 DRIVE = Drive(31, 107, 25.4e-3 / 8)

@@ -212,9 +212,9 @@ class EdgeLoadStress:
 
     Examples
     --------
-    >>> from facegear.geometry.drive import Drive
-    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
-    >>> field = EdgeLoadStress(body, force=1e4)
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> field = fg.EdgeLoadStress(body, force=1e4)
     >>> bool(abs(field.shear(0, body.outer_radius) * 2 - field.shear(3, body.outer_radius)) < 1e-3)
     True
     """

@@ -30,7 +30,7 @@ from facegear.geometry.timed_pairs import merged
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.plate_compliance import PlateCompliance
 from facegear.mechanics.slices import Slices
-from facegear.mechanics.torsional import checked_factor, mesh_stiffness
+from facegear.mechanics.tooth_stiffness import checked_factor, mesh_stiffness
 from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
 from facegear.support.roots import crossing
 from facegear.support.types import FloatArray
@@ -142,7 +142,8 @@ class LoadedContact:
 
     Examples
     --------
-    >>> contact = LoadedContact(Drive(26, 130, 3.175e-3, shaper_teeth=27), torque=100.0)
+    >>> import facegear as fg
+    >>> contact = fg.LoadedContact(fg.Drive(26, 130, 3.175e-3, shaper_teeth=27), torque=100.0)
     >>> round(contact.contact_ratio, 4)
     2.9532
     >>> contact.mesh_stiffness([0.0, 0.5]).shape

@@ -38,8 +38,8 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
-from facegear.mechanics.plate import RadialModes
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.radial_modes import RadialModes
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.transverse import MOST_PERIODS, PinionsOnDisk, Transverse
 from facegear.support.parameters import designed, finite_array, keep, nonnegative, positive, within
 from facegear.support.types import FloatArray
@@ -79,7 +79,7 @@ class MeshOscillator(PinionsOnDisk):
         Phase of each pinion's mesh [mesh periods], in place of that of its angle.
     mesh_stiffness : float
         k_m of a tooth pair along the line of action [N/m], greater than 0:
-        :func:`facegear.mechanics.torsional.mesh_stiffness` has (7-2).
+        :func:`facegear.mechanics.tooth_stiffness.mesh_stiffness` has (7-2).
     mesh_damping : float
         ζ_m, damping of the mesh over its stiffness [s], from above 0 to 0.01.
     sides : sequence of int, optional
@@ -94,16 +94,13 @@ class MeshOscillator(PinionsOnDisk):
 
     Examples
     --------
-    >>> from facegear.floquet.multipliers import growth_rate
-    >>> from facegear.mechanics.plate import Body
-    >>> from facegear.mechanics.torsional import mesh_stiffness
-    >>> from facegear.support.parameters import MeshLoad
-    >>> body, load = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0)
-    >>> teeth = mesh_stiffness(body.drive, correction_factor=0.5)
-    >>> model = MeshOscillator(body, load, mesh_stiffness=teeth, mesh_damping=1e-5)
+    >>> import facegear as fg
+    >>> body, load = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03), fg.MeshLoad(1.0, 3e-6, 1.0)
+    >>> teeth = fg.mesh_stiffness(body.drive, correction_factor=0.5)
+    >>> model = fg.MeshOscillator(body, load, mesh_stiffness=teeth, mesh_damping=1e-5)
     >>> model.system(speed=50.0).size
     15
-    >>> both = MeshOscillator(
+    >>> both = fg.MeshOscillator(
     ...     body, load, (0.0, 0.0), sides=(1, -1), clocking=0.5, mesh_stiffness=teeth, mesh_damping=1e-5
     ... )
     >>> [coordinate.name for coordinate in both.coordinates[-2:]]

@@ -27,7 +27,7 @@ from facegear.mechanics.loaded_contact import (
     fit_tolerances,
     require_kinds,
 )
-from facegear.mechanics.torsional import checked_factor
+from facegear.mechanics.tooth_stiffness import checked_factor
 from facegear.support.parameters import STEEL, Material, keep, one_of
 from facegear.support.types import FloatArray
 
@@ -49,7 +49,8 @@ def line_contact(drive: Drive, contact_ratio: float | None = None) -> ContactPat
 
     Examples
     --------
-    >>> round(line_contact(Drive(26, 130, 3.175e-3)).contact_ratio, 3)
+    >>> import facegear as fg
+    >>> round(fg.line_contact(fg.Drive(26, 130, 3.175e-3)).contact_ratio, 3)
     3.286
     """
     return ContactPath(drive, drive.geometric_contact_ratio if contact_ratio is None else contact_ratio)
@@ -72,7 +73,8 @@ def point_contact(drive: Drive, contact_ratio: float | None = None) -> PointPath
 
     Examples
     --------
-    >>> round(point_contact(Drive(26, 130, 3.175e-3, shaper_teeth=27)).contact_ratio, 6)
+    >>> import facegear as fg
+    >>> round(fg.point_contact(fg.Drive(26, 130, 3.175e-3, shaper_teeth=27)).contact_ratio, 6)
     1.557364
     """
     return PointPath(drive, aligned_contact(drive).contact_ratio if contact_ratio is None else contact_ratio)
@@ -99,9 +101,9 @@ class loaded_contact:  # noqa: N801 (one of three paths, the other two are funct
 
     Examples
     --------
-    >>> from facegear.mechanics.contact import Contact
-    >>> contact = Contact(path=loaded_contact(torque=100.0))
-    >>> round(contact.ratio(Drive(26, 130, 3.175e-3, shaper_teeth=27)), 4)
+    >>> import facegear as fg
+    >>> contact = fg.Contact(path=fg.loaded_contact(torque=100.0))
+    >>> round(contact.ratio(fg.Drive(26, 130, 3.175e-3, shaper_teeth=27)), 4)
     2.9532
     """
 

@@ -61,9 +61,9 @@ class shared_load:  # noqa: N801 (a path, as the functions line_contact and poin
 
     Examples
     --------
-    >>> from facegear.mechanics.contact import Contact
-    >>> contact = Contact(path=shared_load("length_share"), sharing="each")
-    >>> young, old = contact.places(Drive(26, 130, 3.175e-3))
+    >>> import facegear as fg
+    >>> contact = fg.Contact(path=fg.shared_load("length_share"), sharing="each")
+    >>> young, old = contact.places(fg.Drive(26, 130, 3.175e-3))
     >>> float(young.weight(0.4)[0] + old.weight(0.4)[0])
     1.5532
     """

@@ -38,7 +38,8 @@ from facegear.mechanics.disk import (
     unit_shape,
 )
 from facegear.mechanics.edge_stiffness import DrivingForce
-from facegear.mechanics.plate import Body, RadialModes
+from facegear.mechanics.plate import Body
+from facegear.mechanics.radial_modes import RadialModes
 from facegear.support.parameters import MeshLoad, designed, finite_array, keep, positive, within
 from facegear.support.types import FloatArray
 
@@ -297,9 +298,9 @@ class Transverse(PinionsOnDisk):
 
     Examples
     --------
-    >>> from facegear.geometry.drive import Drive
-    >>> body = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
-    >>> model = Transverse(body, MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
+    >>> import facegear as fg
+    >>> body = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03)
+    >>> model = fg.Transverse(body, fg.MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0))
     >>> model.system(speed=50.0).size
     14
     """

@@ -31,7 +31,7 @@ from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, disk_matrices, mirror_signs, modal_mass, unit_shape
 from facegear.mechanics.mesh_oscillator import MeshOscillator
-from facegear.mechanics.plate import RadialModes
+from facegear.mechanics.radial_modes import RadialModes
 from facegear.mechanics.transverse import Driving, PinionsOnDisk
 from facegear.support.parameters import keep, one_of, positive
 from facegear.support.types import FloatArray
@@ -89,14 +89,12 @@ class TwoGears:
 
     Examples
     --------
-    >>> from facegear.mechanics.plate import Body
-    >>> from facegear.mechanics.torsional import mesh_stiffness
-    >>> from facegear.support.parameters import MeshLoad
-    >>> body, load = Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 1.0)
+    >>> import facegear as fg
+    >>> body, load = fg.Body(fg.Drive(26, 130, 3.175e-3), thickness_ratio=0.03), fg.MeshLoad(1.0, 3e-6, 1.0)
     >>> angles = tuple(body.drive.angular_pitch * teeth for teeth in (0, 65))
-    >>> teeth = mesh_stiffness(body.drive, correction_factor=0.5)
-    >>> gear = MeshOscillator(body, load, angles, mesh_stiffness=teeth, mesh_damping=1e-5)
-    >>> TwoGears(gear, roles=("input", "idler")).system(speed=50.0).size
+    >>> teeth = fg.mesh_stiffness(body.drive, correction_factor=0.5)
+    >>> gear = fg.MeshOscillator(body, load, angles, mesh_stiffness=teeth, mesh_damping=1e-5)
+    >>> fg.TwoGears(gear, roles=("input", "idler")).system(speed=50.0).size
     30
     """
 

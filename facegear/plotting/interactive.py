@@ -64,7 +64,10 @@ def turning_view(pinion: Mesh, gear: Mesh, alt: str) -> TurningView:
     -------
     TurningView
     """
-    light = {"ambient": 0.75, "diffuse": 0.7, "specular": 0.2, "roughness": 0.6}
+    # Small faces have a normal too: without the last number those of the gear get no light.
+    light = {
+        "ambient": 0.65, "diffuse": 0.7, "specular": 0.2, "roughness": 0.6, "facenormalsepsilon": 0.0,
+    }  # fmt: skip
 
     def body(mesh: Mesh, colour: str, name: str) -> go.Mesh3d:
         # A tenth of a millimetre is finer than a pixel, and a shorter number a smaller page.

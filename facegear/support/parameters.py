@@ -333,7 +333,8 @@ def rad_per_s(speed_rpm: ArrayLike) -> Any:
 
     Examples
     --------
-    >>> round(rad_per_s(600.0), 4)
+    >>> import facegear as fg
+    >>> round(fg.rad_per_s(600.0), 4)
     62.8319
     """
     return _converted("speed_rpm", speed_rpm, math.pi / 30.0)
@@ -344,7 +345,8 @@ def rpm(speed: ArrayLike) -> Any:
 
     Examples
     --------
-    >>> round(rpm(62.8319), 2)
+    >>> import facegear as fg
+    >>> round(fg.rpm(62.8319), 2)
     600.0
     """
     return _converted("speed", speed, 30.0 / math.pi)
@@ -355,7 +357,8 @@ def watt(power_hp: ArrayLike) -> Any:
 
     Examples
     --------
-    >>> round(watt(1000.0))
+    >>> import facegear as fg
+    >>> round(fg.watt(1000.0))
     745700
     """
     return _converted("power_hp", power_hp, WATT_PER_HORSEPOWER)

@@ -31,7 +31,7 @@ beta = sp.Symbol("beta_k", positive=True)
 U, V, P, Q = (sp.Function(name)(r) for name in "UVPQ")
 phi, psi = (sp.Function(name)(r, theta) for name in ("phi_L", "psi_L"))
 Phi, Psi = (sp.Function(name)(r) for name in ("Phi", "Psi"))
-bending_strains = sp.symbols("E_rr E_rtheta E_thetatheta")  # amplitudes of sym(∇φ_i ⊗ ∇φ_j)
+bending_strains = sp.symbols("E_r_r E_r_theta E_theta_theta")  # amplitudes of sym(∇φ_i ⊗ ∇φ_j)
 lambda_1_squared = 1 / (1 - nu**2)  # (6-11)
 lambda_2_squared = 1 / (2 * (1 + nu))
 

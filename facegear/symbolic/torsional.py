@@ -25,7 +25,7 @@ alpha_c = sp.Symbol("alpha_c", positive=True)  # pressure angle [rad]
 Omega = sp.Symbol("Omega", positive=True)  # speed of the pinion [rad/s]
 m_21 = sp.Symbol("m_21", positive=True)  # gear ratio N1/N2
 R_1, R_2 = sp.symbols("R_1 R_2", positive=True)  # inner and outer radius of the face gear [m]
-cr = sp.Symbol("cr", positive=True)  # contact ratio
+cr = sp.Symbol("c_r", positive=True)  # contact ratio
 T_0 = sp.Symbol("T_0", positive=True)  # mesh period [s]
 s = sp.Symbol("s", positive=True)  # order of a harmonic
 r = sp.Function("r", positive=True)(t)  # radius of the contact point of one pair [m]

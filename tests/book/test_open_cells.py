@@ -1,4 +1,4 @@
-"""A stranger copies the code that lies open on a chapter's page, from its first cell on, and it runs."""
+"""A stranger copies the code that lies open on a chapter's page, from its first cell on: it runs and draws."""
 
 import ast
 import contextlib
@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import pytest
 from IPython.display import display
 
@@ -64,10 +65,14 @@ def on_a_coarse_grid(source):
 
 @pytest.mark.slow
 @chapters
-def test_open_cells_run_as_a_script(path, monkeypatch):
+def test_open_cells_run_as_a_script_and_draw(path, monkeypatch):
     monkeypatch.chdir(path.parent)
     mpl.use("Agg")
+    plt.close("all")
     names = {"display": display, "__name__": "__main__"}
     for cell in filter(is_open, code_cells(path)):
         with contextlib.redirect_stdout(io.StringIO()):
             exec(compile(on_a_coarse_grid(python(cell.source)), path.name, "exec"), names)
+    drawn = plt.get_fignums()
+    plt.close("all")
+    assert drawn

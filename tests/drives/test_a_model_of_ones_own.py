@@ -13,6 +13,7 @@ from facegear.design.changes import effects_of_changes, possible_changes
 from facegear.drives import explore, explorer, report_arrays
 from facegear.drives.cell import cell_detail
 from facegear.drives.cell_figure import cell_figure
+from facegear.drives.studies.study import Quantity, Study
 from facegear.floquet.models import Coordinate, replace_parameter
 from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
@@ -187,12 +188,12 @@ def test_report_ranks_what_can_be_changed():
 
 def test_explorer():
     controls = (
-        explore.Quantity(
+        Quantity(
             "tooth_stiffness", "tooth stiffness [MN/m]", 1.0, 3.0, 2.0, 0.1, 1e6, parameter="tooth_stiffness"
         ),
     )
-    speed = explore.Quantity("highest_speed", "speed [rad/s]", 10.0, 100.0, 45.0, 1.0)
-    study = explore.Study(
+    speed = Quantity("highest_speed", "speed [rad/s]", 10.0, 100.0, 45.0, 1.0)
+    study = Study(
         controls,
         lambda settings: replace(MODEL, tooth_stiffness=settings["tooth_stiffness"]),
         "tooth_stiffness",

@@ -166,14 +166,22 @@ def workers(process):
 @pytest.mark.takes(30)
 @pytest.mark.skipif(os.name == "nt", reason="signals as POSIX has them")
 @pytest.mark.parametrize(
-    ("how", "whom"),
-    [(signal.SIGINT, "group"), (signal.SIGINT, "it"), (signal.SIGTERM, "it"), (signal.SIGKILL, "it")],
+    ("what", "how", "whom"),
+    [
+        ("report", signal.SIGINT, "group"),
+        ("report", signal.SIGINT, "it"),
+        ("report", signal.SIGTERM, "it"),
+        ("report", signal.SIGKILL, "it"),
+        ("assess", signal.SIGINT, "group"),
+        ("assess", signal.SIGTERM, "it"),
+        ("assess", signal.SIGKILL, "it"),
+    ],
     ids=lambda value: getattr(value, "name", value),
 )
-def test_a_report_that_is_interrupted_leaves_neither_files_nor_workers(tmp_path, how, whom):
+def test_what_is_interrupted_leaves_neither_files_nor_workers(tmp_path, what, how, whom):
     (tmp_path / "my.yaml").write_text(CASE_1, encoding="utf-8")
     started = subprocess.Popen(
-        [*COMMAND, "report", "my.yaml", "--jobs", "2"],
+        [*COMMAND, what, "my.yaml", "--jobs", "2"],
         cwd=tmp_path,
         env=ENVIRONMENT,
         stderr=subprocess.PIPE,
@@ -184,7 +192,13 @@ def test_a_report_that_is_interrupted_leaves_neither_files_nor_workers(tmp_path,
     while not (below := workers(process)):
         assert started.poll() is None
         time.sleep(0.1)
-    time.sleep(2.0)  # into their work
+    # Into their work: while Python starts in one of them it would complain by itself.
+    starting = [child for child in below if "LokyProcess" in " ".join(child.cmdline())]
+    for _ in range(300):
+        if all(child.cpu_times().user > 1.0 for child in starting):
+            break
+        time.sleep(0.1)
+    time.sleep(1.0)
     if whom == "group":
         os.killpg(started.pid, how)
     else:

@@ -7,10 +7,10 @@ import pytest
 from facegear.drives import explorer, live
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
 from facegear.drives.examples import example_names, example_text
-from facegear.drives.explore import shown_only
 from facegear.drives.file_study import file_study, study_of
 from facegear.drives.studies.drive import drive_study
 from facegear.drives.studies.oscillator import oscillator_study
+from facegear.drives.studies.study import shown_only
 from facegear.drives.verdict import driven
 
 examples = pytest.mark.parametrize("name", example_names())

@@ -10,7 +10,7 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.sharing import shared_load
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
 from facegear.support.parameters import rad_per_s
 from tests.drives.drive_files import CASE_1, DRIVES, GEARBOX, refusal

@@ -21,7 +21,7 @@ from facegear.drives.variants import (
 from facegear.drives.verdict import driven
 from facegear.floquet.multipliers import growth_rate
 from facegear.mechanics.sharing import RULES
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.support.parameters import rad_per_s
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"

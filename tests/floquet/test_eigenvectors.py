@@ -13,7 +13,7 @@ MANY = 70
 def route(request, monkeypatch):
     """Both routes, of which one may be missing: without Numba all is LAPACK."""
     if request.param == "lockstep":
-        pytest.importorskip("numba")
+        pytest.importorskip("facegear.floquet.lockstep_vectors", exc_type=ImportError)
     else:
         monkeypatch.setattr(module, "_lockstep", lambda: None)
     return request.param
@@ -96,7 +96,7 @@ def test_rates_are_difference_quotients_of_eigenvalues(route, size):
 
 @pytest.mark.parametrize("size", [1, 2, 3, 14, 28, 60])
 def test_lockstep_needs_no_help_with_ordinary_matrices(asked_again, size):
-    pytest.importorskip("numba")
+    pytest.importorskip("facegear.floquet.lockstep_vectors", exc_type=ImportError)
     change(*random(size))
     assert asked_again == []
 
@@ -112,7 +112,7 @@ def test_values_that_are_small_beside_the_largest_are_left_out(route):
 
 @pytest.mark.parametrize("kind", ["double", "defective"])
 def test_eigenvalues_that_coincide_are_left_to_lapack(kind, asked_again):
-    pytest.importorskip("numba")
+    pytest.importorskip("facegear.floquet.lockstep_vectors", exc_type=ImportError)
     matrices, slopes = random(6)
     turned = np.linalg.qr(matrices[7])[0]
     block = np.diag([1.0, 1.0, 2.0, 3.0, 4.0, 5.0])
@@ -151,7 +151,7 @@ def test_few_matrices_are_lapacks(asked_again):
     assert asked_again == [5]
 
 
-def test_what_is_not_finite_is_refused():
+def test_what_is_not_finite_is_refused(route):
     matrices = np.full((MANY, 3, 3), np.nan)
-    with pytest.raises(ArithmeticError):
+    with pytest.raises(ArithmeticError, match="not finite"):
         change(matrices, matrices)

@@ -7,6 +7,7 @@ import psutil
 import pytest
 
 from facegear.maps.crew import Crew
+from facegear.maps.parallel import in_processes
 
 
 def waited(seconds):
@@ -53,13 +54,23 @@ def test_an_error_of_a_task_is_raised_and_no_process_is_left_at_work():
             crew.add("broken", 0.5, broken)
             list(crew.results())
 
+    before = set(psutil.Process().children(recursive=True))
     started = time.perf_counter()
     with pytest.raises(ArithmeticError, match="nothing is known"):
         run()
     assert time.perf_counter() - started < 50.0
-    below = psutil.Process().children(recursive=True)
+    below = set(psutil.Process().children(recursive=True)) - before
     _, alive = psutil.wait_procs([p for p in below if "LokyProcess" in " ".join(p.cmdline())], timeout=10.0)
     assert not alive
+
+
+def test_processes_of_joblib_are_left_alone():
+    """A crew between two calls of joblib in one process."""
+    assert in_processes(abs, [(-1,), (-2,)], 2) == [1, 2]
+    with Crew(jobs=2) as crew:
+        crew.add("one", 1.0, waited, 0.0)
+        assert [name for name, _ in crew.results()] == ["one"]
+    assert in_processes(abs, [(-1,), (-2,)], 2) == [1, 2]
 
 
 def test_an_error_in_this_process():

@@ -154,6 +154,14 @@ def test_peaks_between_the_speeds_are_found_to_a_millionth(damping):
     np.testing.assert_allclose(found.peak_force_rms, exact.max(axis=1), rtol=1e-6)
 
 
+def test_a_resonance_that_is_found_at_one_of_the_speeds_is_one_peak():
+    """Coarsely looked for between 0.995 and 1.01, it is where one of them stands already."""
+    speeds = np.sort(np.append(np.linspace(0.6, 1.4, 9)[[0, 1, 2, 6, 7, 8]], [0.995, 1.01]))
+    found = frequency_response(Narrow(1e-3, 1.0, WAVE), speeds, resolution=1e-2, jobs=1)
+    assert found.peak_label.values.tolist() == ["1/1"]
+    assert abs(found.peak_speed.values[0] - 1.0) < 1e-2
+
+
 def test_small_work_starts_no_processes(monkeypatch):
     def parallel(*_, **__):
         raise AssertionError("processes for a moment's work")

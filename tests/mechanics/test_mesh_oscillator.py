@@ -21,7 +21,7 @@ from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.disk import disk_matrices, disk_modes, modal_mass
 from facegear.mechanics.mesh_oscillator import FOLLOWED, MeshOscillator
 from facegear.mechanics.sharing import RULES, shared_load
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from tests.independent.complex_galerkin import Pinion, Spring, oscillator_multipliers
 from tests.independent.monodromy import fitted_order, integrated
 from tests.mechanics.test_transverse import complex_disk, greatest_distance

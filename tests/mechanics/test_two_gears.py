@@ -17,7 +17,7 @@ from facegear.mechanics.disk import disk_matrices, mirror_signs
 from facegear.mechanics.mesh_oscillator import FOLLOWED, MeshOscillator
 from facegear.mechanics.pressed_points import PressedPoints, Spread
 from facegear.mechanics.spreads import ContactPoints, FaceStrip, ToothPatches
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
 from tests.independent.complex_galerkin import ComplexDisk, Pinion, Spring
 from tests.independent.edge_load import LoadedDisk

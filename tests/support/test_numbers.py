@@ -13,7 +13,7 @@ from compendium.datasets.modulation import ScaledModulation
 from facegear.design import cancellation, envelope
 from facegear.design import teeth as tooth_design
 from facegear.design.body import Requirements
-from facegear.drives.explore import Quantity
+from facegear.drives.studies.study import Quantity
 from facegear.floquet.columns import column_spectral_radii
 from facegear.floquet.models import is_part
 from facegear.floquet.multipliers import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus, Stepwise
@@ -27,7 +27,15 @@ from facegear.geometry.skew_line import SkewLine
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import tongues
-from facegear.mechanics import cases, classical, classical_pairs, disk, plate, torsional
+from facegear.mechanics import (
+    cases,
+    classical,
+    classical_pairs,
+    disk,
+    radial_modes,
+    tooth_stiffness,
+    torsional,
+)
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.gearboxes import FIGURES
@@ -113,7 +121,7 @@ FUNCTIONS = {
     ),
     "mesh_frequency": (CLASSICAL[-1].system, {"mesh_frequency": 2.0}),
     "mesh_period": (lambda speed: mesh_period(DRIVE, speed), {"speed": 50.3}),
-    "mesh_stiffness": (lambda c: torsional.mesh_stiffness(BOX.drive, c), {"c": 0.3}),
+    "mesh_stiffness": (lambda c: tooth_stiffness.mesh_stiffness(BOX.drive, c), {"c": 0.3}),
     "cylinder_inertia": (torsional.cylinder_inertia, {"radius": 0.1, "height": 0.3, "density": 7000.0}),
     "natural_speed": (
         lambda frequency: torsional.natural_speed(BOX.drive, frequency),
@@ -140,10 +148,13 @@ FUNCTIONS = {
     "shape_vector": (lambda **x: disk.shape_vector(BODY, **x), {"radius": 0.17, "angle": 0.3}),
     "reference_stiffness": (lambda **x: disk.reference_stiffness(BODY, **x), {"highest_speed": 70.3}),
     "radial_modes": (
-        lambda **x: plate.radial_modes.__wrapped__(**x).coefficients,
+        lambda **x: radial_modes.radial_modes.__wrapped__(**x).coefficients,
         {"bore_ratio": 0.37, "poissons_ratio": 0.29, "nodal_circles": 1, "nodal_diameters": 2},
     ),
-    "centrifugal_stress": (plate.centrifugal_stress, {"x": 0.7, "bore_ratio": 0.37, "poissons_ratio": 0.29}),
+    "centrifugal_stress": (
+        radial_modes.centrifugal_stress,
+        {"x": 0.7, "bore_ratio": 0.37, "poissons_ratio": 0.29},
+    ),
     "phase_split": (lambda angle: phase_split(DRIVE, [0.0, angle]), {"angle": 2.1}),
     "phasing_sum": (
         lambda angle, **x: cancellation.phasing_sum(pinion_angles=[0.0, angle], **x),

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from numpy.polynomial import chebyshev
 
-from facegear.mechanics.plate import centrifugal_stiffness, centrifugal_stress, radial_modes
+from facegear.mechanics.radial_modes import centrifugal_stiffness, centrifugal_stress, radial_modes
 from facegear.symbolic import galerkin as g
 
 BETA_N = g.beta**4 * g.D / (g.rho * g.h)

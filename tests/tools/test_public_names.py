@@ -1,5 +1,8 @@
 """The page of public names, and how references in docstrings are resolved."""
 
+import ast
+import builtins
+import doctest
 import re
 from pathlib import Path
 from pydoc import locate
@@ -30,6 +33,20 @@ def test_page_lists_at_the_head_of_a_section_what_the_section_has():
 @pytest.mark.parametrize("name", sorted(set(fg.__all__) - {"STEEL"}))
 def test_every_public_name_has_an_example(name):
     assert ">>> " in getattr(fg, name).__doc__
+
+
+@pytest.mark.parametrize("name", sorted(set(fg.__all__) - {"STEEL"}))
+def test_a_copied_example_brings_all_its_names_along(name):
+    examples = doctest.DocTestParser().get_examples(getattr(fg, name).__doc__)
+    nodes = list(ast.walk(ast.parse("".join(example.source for example in examples))))
+    used = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    made = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    made |= {node.arg for node in nodes if isinstance(node, ast.arg)}
+    made |= {node.name for node in nodes if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    for node in nodes:
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            made |= {(alias.asname or alias.name).split(".")[0] for alias in node.names}
+    assert not used - made - set(dir(builtins))
 
 
 def test_name_is_followed_from_its_module_on():

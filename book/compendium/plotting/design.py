@@ -44,7 +44,7 @@ def face_width(data: xr.Dataset) -> Figure:
     """
     figure, (ax,) = panels(1, 1, 3.4)
     ax.plot(data["pinion_teeth"], data["face_width"] * 1e3, "o-", color=BLUE, markersize=5)
-    ax.set(xlabel=_TEETH, ylabel="face width $L$ [mm]", ylim=(0, None))
+    ax.set(xlabel=_TEETH, ylabel="face width $L$ [mm]", ylim=(0, 1.08e3 * float(data["face_width"].max())))
     return figure
 
 
@@ -65,9 +65,13 @@ def root_stress(data: xr.Dataset, allowable: float) -> Figure:
         stress = data["root_stress"].sel(root=number) / 1e6
         ax.plot(data["pinion_teeth"], stress, look, color=colour, markersize=4, label=name)
     ax.axhline(allowable / 1e6, color=VERMILION, linestyle=":", linewidth=2)
+    # The limit is named where the curves leave most room above it.
+    teeth, above = data["pinion_teeth"].values, data["root_stress"].values / allowable - 1.0
+    room = np.where(above > -0.02, above, np.inf).min(axis=0)
+    runs = [room[first : first + 4].min() for first in range(teeth.size - 3)]
     ax.annotate(
         rf"$\sigma_Y/SF$ = {allowable / 1e6:.0f} MPa",
-        (float(data["pinion_teeth"][0]), allowable / 1e6),
+        (float(teeth[int(np.argmax(runs))]), allowable / 1e6),
         xytext=(0, 5),
         textcoords="offset points",
         color=VERMILION,

@@ -172,7 +172,7 @@ def _label_tongues(ax: Axes, chart: xr.Dataset) -> None:
     for label, (speed, height, _) in sorted(places.items(), key=lambda item: item[1][0]):
         share = (speed - low) / (high - low)
         # Rows above the axes, the lowest one in which the name does not touch its neighbour.
-        level = next((i for i, end in enumerate(free) if share - end > 0.082), int(np.argmin(free)))
+        level = next((i for i, end in enumerate(free) if share - end > 0.1), int(np.argmin(free)))
         free[level] = share
         top = ax.get_ylim()[1]
         ax.annotate(
@@ -184,6 +184,8 @@ def _label_tongues(ax: Axes, chart: xr.Dataset) -> None:
             fontsize=8.5,
             color=INK,
             annotation_clip=False,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4},
+            zorder=4,  # above the leaders of others
             arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
             if height < top
             else None,

@@ -32,7 +32,7 @@ _AXIS = {
 _SCALE = {"stiffness": 1.0, "damping": 1e6, "mass": 1.0}
 _SPEED = "speed of the face gear [rpm]"
 # Heights at which the name of a tongue is tried, from its section, in parts of the axis.
-_SHIFTS = tuple(sign * 0.09 * k for k in range(11) for sign in ((1, -1) if k else (1,)))
+_SHIFTS = tuple(sign * 0.09 * k for k in range(6) for sign in ((1, -1) if k else (1,)))
 
 
 def _parameter(chart: xr.Dataset) -> str:
@@ -70,16 +70,18 @@ def _draw_sections(ax: Axes, chart: xr.Dataset) -> None:
                 places[label] = (float(row["peak"][tongue]), height, growth)
     taken: list[tuple[float, float]] = []
     top = ax.get_ylim()[1]
-    for label, (speed, height, _) in sorted(places.items(), key=lambda item: item[1][0]):
-        # Move up and down until no other name is in the way.
+    for label, (speed, height, _) in sorted(places.items(), key=lambda item: -item[1][2]):
+        # Move up and down a little until no other name is in the way; the weakest find no place.
         heights = [height + (shift + 0.04) * top for shift in _SHIFTS]
         inside = [place for place in heights if 0.04 * top < place < 0.96 * top]
         free = [
             place
             for place in inside
-            if all(abs(speed - x) > 78 or abs(place - y) > 0.085 * top for x, y in taken)
+            if all(abs(speed - x) > 95 or abs(place - y) > 0.1 * top for x, y in taken)
         ]
-        place = (free or inside)[0]
+        if not free:
+            continue
+        place = free[0]
         taken.append((speed, place))
         ax.text(
             speed,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from facegear.drives.explore import Settings
+from facegear.drives.studies.study import Settings
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath
 from facegear.mechanics.contact import Contact

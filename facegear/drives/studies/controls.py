@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import TypeVar
 
-from facegear.drives.explore import Quantity, Settings
+from facegear.drives.studies.study import Quantity, Settings
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.floquet.periodic import named
 from facegear.mechanics.plate import Body

@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from facegear.drives.explore import Choice, Quantity, Settings, Study
 from facegear.drives.studies.contact import TREGOLD, TRUE_SWEEP, chosen_ratio, contact_as_set, require_lines
 from facegear.drives.studies.controls import (
     DEGREE,
@@ -18,6 +17,7 @@ from facegear.drives.studies.controls import (
     thickness_control,
 )
 from facegear.drives.studies.force import PRESSED, force_as_set, force_controls
+from facegear.drives.studies.study import Choice, Quantity, Settings, Study
 from facegear.floquet.models import Model
 from facegear.mechanics import cases
 from facegear.mechanics.transverse import Transverse

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from facegear.drives.explore import Choice, Quantity, Settings
 from facegear.drives.forces import RIM, pressed
+from facegear.drives.studies.study import Choice, Quantity, Settings
 from facegear.geometry.drive import Drive
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from facegear.drives.explore import Quantity, Settings, Study
 from facegear.drives.studies.controls import (
     parameter_control,
     require_kind,
     speed_control,
     with_parameters,
 )
+from facegear.drives.studies.study import Quantity, Settings, Study
 from facegear.floquet.models import Model, value_of
 from facegear.mechanics import gearboxes
 from facegear.mechanics.heavy_shafts import HeavyShafts

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from facegear.drives.explore import Choice, Quantity, Settings, Study
+from facegear.drives.studies.study import Choice, Quantity, Settings, Study
 from facegear.floquet.models import Model
 from facegear.mechanics.classical import Mathieu, Meissner
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from facegear.drives.explore import Choice, Quantity, Settings, Study
 from facegear.drives.flexible_teeth import CENTROID, FlexibleTeeth
 from facegear.drives.studies.contact import TREGOLD, TRUE_SWEEP, contact_as_set
 from facegear.drives.studies.controls import (
@@ -16,12 +15,13 @@ from facegear.drives.studies.controls import (
     thickness_control,
 )
 from facegear.drives.studies.force import force_as_set, force_controls
+from facegear.drives.studies.study import Choice, Quantity, Settings, Study
 from facegear.floquet.models import Model
 from facegear.mechanics import cases
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.sharing import RULES
-from facegear.mechanics.torsional import mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
 
 ALONE, FRONT, BOTH, BETWEEN = "one", "two on one face", "one on either face", "one between two gears"

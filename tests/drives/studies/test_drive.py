@@ -8,11 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from facegear.drives.explore import (
-    Choice,
-    reading_map,
-)
+from facegear.drives.explore import reading_map
 from facegear.drives.studies.drive import drive_study
+from facegear.drives.studies.study import Choice
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
 from facegear.mechanics import cases

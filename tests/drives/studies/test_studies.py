@@ -6,12 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from facegear.drives.explore import (
-    Choice,
-)
 from facegear.drives.studies.drive import drive_study
 from facegear.drives.studies.gearbox import damage_study, gearbox_study, shafts_study
 from facegear.drives.studies.oscillator import SQUARE, oscillator_study
+from facegear.drives.studies.study import Choice
 from facegear.drives.studies.teeth import BOTH, teeth_study
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
@@ -22,7 +20,8 @@ from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.sharing import shared_load
-from facegear.mechanics.torsional import Torsional, mesh_stiffness
+from facegear.mechanics.tooth_stiffness import mesh_stiffness
+from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import Material, MeshLoad
 from tests.drives.studies.models import THREE
