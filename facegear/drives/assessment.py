@@ -14,7 +14,8 @@ from facegear.drives.basis import unstable_share
 from facegear.drives.disk_response import DiskResponse
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
-from facegear.drives.intervals import Intervals, gaps, in_rpm, united
+from facegear.drives.growth_words import corner, mechanism, told, within_tolerances
+from facegear.drives.intervals import Intervals, gaps, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
 from facegear.drives.tolerances import WorstCase
@@ -27,8 +28,6 @@ SAFE, UNSTABLE, DEPENDS = "safe under all", "unstable under all", "depends"
 
 # What two models may differ in, as a sentence has it.
 _EFFECTS = {"contact": "the contact", "force": "the direction of the driving force", "teeth": "the teeth"}
-# Intervals of speed named one by one.
-_NAMED = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,8 +147,8 @@ class Assessment:
                 f" Of {len(self.torsion)} models of torsion {still} {'is' if still == 1 else 'are'} stable"
             )
             words += " in the range with its tolerance." if self.file.tolerances.speed else "."
-        words += f" Stable under all of them: {_told(self.always_stable)}."
-        words += f" Unstable under all of them: {_told(self.always_unstable)}."
+        words += f" Stable under all of them: {told(self.always_stable)}."
+        words += f" Unstable under all of them: {told(self.always_unstable)}."
         if self.verdict != SAFE:
             words += f" Worst: {self.mechanism}."
         open_cases = sum(not outcome.settled for outcome in self.outcomes)
@@ -159,41 +158,23 @@ class Assessment:
 
     @property
     def mechanism(self) -> str:
-        """What grows fastest of all models, and how."""
+        """What grows fastest of all models, and at the corners of their tolerances, and how."""
         unstable = [(o.variant.name, tongue) for o in self.outcomes for tongue in o.tongues]
         unstable += [(f"torsion; {name}", t) for name, found in self.torsion.items() for t in found]
+        for name, case in self.worst.items():
+            if case.fastest is not None:
+                factors, tongue = case.fastest
+                unstable.append((f"{name}, tolerances; {corner(factors, case.factors)}", tongue))
         if not unstable:
-            return "nothing grows at the values of the file"
+            return "nothing grows at the values of the file, nor at the corners of its tolerances"
+        # The first of equal ones, a model before a corner that is the same.
         name, strongest = max(unstable, key=lambda pair: pair[1].growth_rate)
-        kind = "parametric resonance" if strongest.combination.order > 0 else "flutter of the mean system,"
-        speed = f"{rpm(strongest.peak):.4g} rpm"
-        return f"{kind} {strongest.label} at {speed}, growing by {strongest.growth_rate:.3g} 1/s ({name})"
+        return f"{mechanism(strongest)} ({name})"
 
     @property
     def over_tolerances(self) -> tuple[str, ...]:
         """What the tolerances of the file make of its own contact and teeth, a sentence for each force."""
-        given = self.file.tolerances
-        disk = {"stiffness": given.stiffness, "damping": given.damping, "speed": given.speed}
-        torsion = {"stiffness of teeth": given.stiffness, "damping of teeth": given.damping}
-        torsion |= {"stiffness of shafts": given.shaft_stiffness, "damping of shafts": given.shaft_damping}
-        torsion |= {"speed": given.speed}
-        found = []
-        for force, case in self.worst.items():
-            parts = torsion if force == TORSION else disk
-            ranges = ", ".join(f"{name} ±{100 * part:g} %" for name, part in parts.items() if part)
-            if case.unknown:
-                words = f"not known ({case.unknown})"
-            elif case.is_stable:
-                words = "stable for all values"
-            elif case.swept:
-                words = (
-                    f"unstable for some values at {_told(case.swept)}, {100 * case.share:.3g} % of the speeds"
-                )
-            else:
-                speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
-                words = f"stable at all corners; tongues open between them at {speeds} rpm"
-            found.append(f"With {ranges}, {force}: {words}.")
-        return tuple(found)
+        return within_tolerances(self.worst, self.file.tolerances)
 
     @property
     def static_force(self) -> float:
@@ -301,10 +282,6 @@ class Assessment:
 
 def _intervals(found: Sequence[Tongue]) -> Intervals:
     return tuple((tongue.lower, tongue.upper) for tongue in found)
-
-
-def _told(intervals: Intervals) -> str:
-    return in_rpm(intervals, _NAMED) if intervals else "no speed"
 
 
 def _listed(words: Sequence[str]) -> str:

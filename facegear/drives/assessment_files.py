@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,11 @@ import xarray as xr
 
 from facegear.drives.assessment import SAFE, Assessment
 from facegear.drives.findings import TORSION
+from facegear.drives.growth_words import corner
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
+from facegear.drives.tolerances import WorstCase
+from facegear.maps.tracing import Tongue
 from facegear.plotting import assessment as draw
 from facegear.support import labelled
 from facegear.support.files import folder_written_whole
@@ -20,6 +24,8 @@ from facegear.support.tables import write_table
 
 # Resonances of each model that the page names.
 _PEAKS = 5
+# Headings of what grows fastest.
+_FASTEST = ("fastest", "growth [1/s]")
 
 PAGE = "assessment.html"
 """Name of the page among the files of an assessment."""
@@ -119,12 +125,38 @@ def _corners(names: Sequence[str], found: Assessment, caption: str) -> Iterator[
             name,
             *(f"{factor:g}" for factor in factors),
             ", ".join(f"{rpm(t.lower):.4g} to {rpm(t.upper):.4g}" for t in tongues) or "none",
+            *_fastest(tongues),
         )
         for name, case in cases.items()
         for factors, tongues in case.corners.items()
     )
     factors = next(iter(cases.values())).factors
-    yield Table(("model", *(f"{words}, times" for words in factors), "unstable [rpm]"), rows, caption)
+    headings = ("model", *(f"{words}, times" for words in factors), "unstable [rpm]", *_FASTEST)
+    yield Table(headings, rows, caption)
+
+
+def _fastest(found: Sequence[Tongue]) -> tuple[str, str]:
+    """Label of the tongue that grows fastest and its growth rate."""
+    if not found:
+        return "none", "0"
+    tongue = max(found, key=lambda each: each.growth_rate)
+    return tongue.label, f"{tongue.growth_rate:.3g}"
+
+
+def _corner_columns(worst: Mapping[str, WorstCase]) -> dict[str, list[object]]:
+    """List corners of tolerances row by row: a tongue, or that there is none."""
+    headings = ("model", "corner", "label", "lower_rpm", "upper_rpm", "peak_rpm", "largest_growth_per_s")
+    none = (math.nan,) * 3
+    rows = [
+        (name, corner(factors, case.factors), *one)
+        for name, case in worst.items()
+        for factors, found in case.corners.items()
+        for one in (
+            [(t.label, *(float(rpm(x)) for x in (t.lower, t.upper, t.peak)), t.growth_rate) for t in found]
+            or [("", *none, 0.0)]
+        )
+    ]
+    return {heading: list(column) for heading, column in zip(headings, zip(*rows, strict=True), strict=True)}
 
 
 def _dynamic_load(found: Assessment) -> Section:
@@ -234,6 +266,8 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
         labelled.save(table, place / "models.nc")
         if (torsion := found.torsion_table) is not None:
             labelled.save(torsion, place / "torsion_response.nc")
+        if any(case.corners for case in found.worst.values()):
+            write_table(_corner_columns(found.worst), place / "tolerances.csv")
         if (response := found.response_table) is not None:
             labelled.save(response, place / "disk_response.nc")
             write_table(_response_columns(response), place / "disk_response.csv")

@@ -246,6 +246,12 @@ class WorstCase:
         return not self.swept and not self.opens and not self.unknown
 
     @property
+    def fastest(self) -> tuple[tuple[float, ...], Tongue] | None:
+        """Factors of the corner that grows fastest, and the tongue in which it does; None where all are stable."""
+        grown = [(factors, tongue) for factors, found in self.corners.items() for tongue in found]
+        return max(grown, key=lambda pair: pair[1].growth_rate, default=None)
+
+    @property
     def share(self) -> float:
         """Part of the range of speed in which some value is unstable, 0 to 1."""
         low, high = self.speeds

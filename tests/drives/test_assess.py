@@ -8,10 +8,11 @@ import pytest
 import xarray as xr
 
 from facegear.drives.assess import _in_torsion, assess
-from facegear.drives.assessment import Assessment, _told
+from facegear.drives.assessment import Assessment
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.findings import TORSION
+from facegear.drives.growth_words import told
 from facegear.drives.intervals import gaps
 from facegear.drives.outcome import Outcome
 from facegear.drives.tolerances import Tolerances, WorstCase, not_known
@@ -61,7 +62,7 @@ class TestVerdict:
         )
         assert found.verdict == "unstable under all"
         assert "Unstable under all of them: 250 to 300 rpm." in found.headline
-        assert _told(found.always_stable) == "100 to 200, 400 to 1000 rpm"
+        assert told(found.always_stable) == "100 to 200, 400 to 1000 rpm"
         assert (
             "Worst: parametric resonance (1+8)/1 at 250 rpm, growing by 2 1/s (Tregold; force keeps"
             in found.headline
@@ -85,7 +86,7 @@ class TestVerdict:
         torsion = {"Tregold, arm as printed": (tongue(600, 620, 90.0),)}
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
         assert found.verdict == "unstable under all"
-        assert _told(found.always_unstable) == "600 to 620 rpm"
+        assert told(found.always_unstable) == "600 to 620 rpm"
         assert "(torsion; Tregold, arm as printed)" in found.headline
         torsion["true sweep, arm as printed"] = ()
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
@@ -102,7 +103,31 @@ class TestVerdict:
             "With stiffness ±10 %, speed ±2 %, force keeps its direction: unstable for some values at 200 to 290 rpm, "
             "10 % of the speeds.",
         )
-        assert _told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+        assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+
+    def test_growth_at_a_corner_of_the_tolerances_is_told(self, tmp_path):
+        """A corner that grows faster than every model at the values of the file is the worst, with its factors."""
+        strong = replace(tongue(240, 260, 7.5), combination=Combination(1, 1, "mean", 0))
+        corners = {
+            (1.0, 1.0): (tongue(200, 300),),
+            (1.1, 0.8): (tongue(210, 290, 5.0), strong),
+            (0.9, 0.8): (),
+        }
+        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, corners, ((20.0, 30.0),), ())}
+        file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1, damping=0.2))
+        found = assessment(outcome("Tregold", DEAD, RIGID, tongue(200, 300)), worst=worst, file=file)
+        said = f"flutter of the mean system, {strong.label} at 250 rpm, growing by 7.5 1/s"
+        where = "with stiffness times 1.1, damping times 0.8"
+        assert f"Worst: {said} ({DEAD}, tolerances; {where})." in found.headline
+        assert found.over_tolerances[0].endswith(f"; fastest of the corners: {said}, {where}.")
+        text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
+        assert all(words in text for words in ("growth [1/s]", strong.label, "7.5"))
+        table = (tmp_path / "tolerances.csv").read_text(encoding="utf-8-sig")
+        assert f'"{where}",{strong.label},240,260,250,7.5' in table
+        assert '"with stiffness times 0.9, damping times 0.8",,nan,nan,nan,0' in table
+        # The same rate at the values of the file is told of the model.
+        alone = {DEAD: replace(worst[DEAD], corners={(1.0, 1.0): (tongue(200, 300),)})}
+        assert f"({outcome('Tregold', DEAD, RIGID).variant.name})" in replace(found, worst=alone).headline
 
     def test_tolerances_of_shafts_turn_torsion(self):
         swept = ((float(rad_per_s(600.0)), float(rad_per_s(690.0))),)
@@ -119,7 +144,7 @@ class TestVerdict:
             "With damping of teeth ±20 %, stiffness of shafts ±10 %, torsion: unstable for some values at 600 to 690 "
             "rpm, 10 % of the speeds.",
         )
-        assert _told(found.always_stable) == "100 to 600, 690 to 1000 rpm"
+        assert told(found.always_stable) == "100 to 600, 690 to 1000 rpm"
 
     def test_tolerances_that_could_not_be_followed_make_no_drive_safe(self):
         file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1))
@@ -164,7 +189,7 @@ def test_gaps_between_intervals():
     assert gaps((), (1.0, 2.0)) == ((1.0, 2.0),)
     assert gaps([(1.0, 2.0)], (1.0, 2.0)) == ()
     assert gaps([(0.5, 1.5)], (1.0, 2.0)) == ((1.5, 2.0),)
-    assert _told(tuple((float(i), i + 0.1 * i) for i in range(1, 7))).endswith("rpm and 2 narrower intervals")
+    assert told(tuple((float(i), i + 0.1 * i) for i in range(1, 7))).endswith("rpm and 2 narrower intervals")
 
 
 def test_the_page_shows_hostile_names_as_text(tmp_path):
