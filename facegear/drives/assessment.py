@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from facegear.drives import disk_response
-from facegear.drives.basis import unstable_share
+from facegear.drives.assessment_table import model_table
 from facegear.drives.disk_response import DiskResponse
+from facegear.drives.disk_response_table import peaks_table, response_table
+from facegear.drives.disk_response_words import sentences
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import corner, mechanism, told, within_tolerances
@@ -20,7 +21,7 @@ from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
 from facegear.drives.tolerances import WorstCase
 from facegear.maps.tracing import Tongue
-from facegear.support.labelled import text, variable
+from facegear.support.labelled import variable
 from facegear.support.parameters import rpm
 
 SAFE, UNSTABLE, DEPENDS = "safe under all", "unstable under all", "depends"
@@ -136,25 +137,36 @@ class Assessment:
         if self.verdict == SAFE:
             words = f"Safe under all: {where} none is unstable at any speed."
         elif self.verdict == UNSTABLE and stable:
-            words = f"Unstable under all, in torsion; {where} {are} stable at all speeds."
+            words = f"Unstable under all, because of torsion; {where} {are} stable at all speeds."
         elif self.verdict == UNSTABLE:
             words = f"Unstable under all: {where} each is unstable at some speeds."
         else:
             words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
-        if self.torsion:
-            still = sum(not found for found in self.torsion.values())
-            words += (
-                f" Of {len(self.torsion)} models of torsion {still} {'is' if still == 1 else 'are'} stable"
-            )
-            words += " in the range with its tolerance." if self.file.tolerances.speed else "."
-        words += f" Stable under all of them: {told(self.always_stable)}."
-        words += f" Unstable under all of them: {told(self.always_unstable)}."
+        words += self._of_torsion
+        values = ", tolerances included" if self.worst else ""
+        words += f" Speeds at which every model is stable{values}: {told(self.always_stable)}."
+        families = (
+            "all models of the disk's motion, or all of torsion, are" if self.torsion else "all models are"
+        )
+        words += f" Speeds at which {families} unstable: {told(self.always_unstable)}."
         if self.verdict != SAFE:
             words += f" Worst: {self.mechanism}."
         open_cases = sum(not outcome.settled for outcome in self.outcomes)
         if open_cases:
             words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn them."
         return words
+
+    @property
+    def _of_torsion(self) -> str:
+        """How many models of torsion are stable, as the headline has it; empty without any."""
+        if not self.torsion:
+            return ""
+        count, still = len(self.torsion), sum(not found for found in self.torsion.values())
+        where = " in the range with its tolerance" if self.file.tolerances.speed else ""
+        if not still:
+            each = f"Each of the {count} models" if count > 1 else "The one model"
+            return f" {each} of torsion is unstable somewhere{where}."
+        return f" Of {count} models of torsion {still} {'is' if still == 1 else 'are'} stable at all speeds{where}."
 
     @property
     def mechanism(self) -> str:
@@ -203,12 +215,24 @@ class Assessment:
     @property
     def forced(self) -> tuple[str, ...]:
         """Forced response of the disk in words: how far the force of a mesh departs from that at rest, or why not."""
-        return disk_response.sentences(self.disk_responses, self.static_force)
+        return sentences(self.disk_responses, self.static_force)
 
     @property
     def response_table(self) -> xr.Dataset | None:
-        """Forced response of the disk as arrays (:func:`facegear.drives.disk_response.response_table`)."""
-        return disk_response.response_table(self.disk_responses, describe(self.file))
+        """Forced response of the disk as arrays (:func:`facegear.drives.disk_response_table.response_table`)."""
+        return response_table(self.disk_responses, self._parameters)
+
+    @property
+    def response_peaks(self) -> xr.Dataset | None:
+        """Peaks of the forced response (:func:`facegear.drives.disk_response_table.peaks_table`)."""
+        return peaks_table(self.disk_responses, self._parameters)
+
+    @property
+    def _parameters(self) -> str:
+        """Of the drive, for the provenance of arrays whose models have a basis each."""
+        return (
+            f"{describe(self.file)}; each model in a basis of its own, given beside it, not that of the file"
+        )
 
     @property
     def torsion_table(self) -> xr.Dataset | None:
@@ -250,34 +274,9 @@ class Assessment:
         )
 
     def table(self) -> xr.Dataset:
-        """All models and what they come to, as arrays.
-
-        Returns
-        -------
-        xarray.Dataset
-            Over ``model``: ``unstable_share`` [-], ``largest_growth`` [1/s], ``tongues``, ``settled``; names of
-            contact, force and teeth as coordinates.
-        """
-        names = {
-            name: text("model", [getattr(o.variant, name) for o in self.outcomes], words)
-            for name, words in (("contact", "Contact"), ("force", "Driving force"), ("teeth", "Teeth"))
-        }
-        shares = [unstable_share(o.tongues, self.speeds) for o in self.outcomes]
-        growth = [o.growth_rate for o in self.outcomes]
-        count = [float(len(o.tongues)) for o in self.outcomes]
-        settled = [float(o.settled) for o in self.outcomes]
-        return xr.Dataset(
-            {
-                "unstable_share": variable("model", shares, "Unstable part of the speeds", "1", atol=1e-7),
-                "largest_growth": variable(
-                    "model", growth, "Largest growth rate", "1/s", rtol=1e-6, atol=1e-6
-                ),
-                "tongues": variable("model", count, "Number of tongues", "1", atol=0.1),
-                "settled": variable("model", settled, "1 where the basis suffices", "1", atol=0.1),
-            },
-            {"model": np.arange(len(self.outcomes)), **names},
-            {"parameters": describe(self.file)},
-        )
+        """All models and what they come to, as arrays (:func:`facegear.drives.assessment_table.model_table`)."""
+        wide = self.file.tolerances.widened(self.speeds)
+        return model_table(self.outcomes, self.torsion, self.speeds, wide, self._parameters)
 
 
 def _intervals(found: Sequence[Tongue]) -> Intervals:

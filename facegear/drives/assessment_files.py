@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from facegear.drives.assessment import SAFE, Assessment
+from facegear.drives.assessment_columns import corner_columns, model_columns, peak_columns, response_columns
+from facegear.drives.assessment_table import DISK
+from facegear.drives.basis import unstable_share
+from facegear.drives.disk_response_words import rounded
 from facegear.drives.findings import TORSION
-from facegear.drives.growth_words import corner
+from facegear.drives.growth_words import told
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
-from facegear.drives.tolerances import WorstCase
+from facegear.drives.variants import Variant
 from facegear.maps.tracing import Tongue
 from facegear.plotting import assessment as draw
 from facegear.support import labelled
@@ -26,6 +29,7 @@ from facegear.support.tables import write_table
 _PEAKS = 5
 # Headings of what grows fastest.
 _FASTEST = ("fastest", "growth [1/s]")
+_BASIS = "nodal circles, diameters"
 
 PAGE = "assessment.html"
 """Name of the page among the files of an assessment."""
@@ -57,6 +61,12 @@ def _group_of(outcome: Outcome) -> str:
     return f"{outcome.variant.contact}, {outcome.variant.force}"
 
 
+def _basis_of(variant: Variant) -> str:
+    """Nodal circles and diameters of a model, in words."""
+    body = variant.model.gear.body
+    return f"{body.nodal_circles}, {body.nodal_diameters}"
+
+
 def _models(found: Assessment) -> Section:
     groups: dict[str, dict[str, list[tuple[float, float]]]] = {}
     for outcome in found.outcomes:
@@ -80,25 +90,39 @@ def _models(found: Assessment) -> Section:
         "depending on the model.",
         "Horizontal strips over speed, one for each model, green with red intervals; a last one in three colours",
     )
-    places, table = {group: place for place, group in enumerate(groups)}, found.table()
-    rows = tuple(
+    names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
+    headings = (*names, *_FASTEST, _BASIS, "settled")
+    return Section("Models", (strips, Table(headings, _model_rows(found), "Models and what they come to")))
+
+
+def _model_rows(found: Assessment) -> tuple[tuple[str, ...], ...]:
+    """Rows of the table of models, by contact and force, those of torsion last."""
+    places: dict[str, int] = {}
+    for outcome in found.outcomes:
+        places.setdefault(_group_of(outcome), len(places))
+    order = sorted(found.outcomes, key=lambda outcome: places[_group_of(outcome)])
+    disk = (
         (
-            *(str(table[name].values[i]) for name in ("contact", "force", "teeth")),
-            f"{100 * float(table['unstable_share'][i]):.3g}",
-            f"{float(table['largest_growth'][i]):.3g}",
-            "yes" if table["settled"].values[i] else "NO",
+            DISK,
+            *(outcome.variant.contact, outcome.variant.force, outcome.variant.teeth),
+            *_what_grows(outcome.tongues, found.speeds),
+            _basis_of(outcome.variant),
+            "yes" if outcome.settled else "NO",
         )
-        for i in sorted(range(len(found.outcomes)), key=lambda i: places[_group_of(found.outcomes[i])])
+        for outcome in order
     )
-    headings = (
-        "contact",
-        "driving force",
-        "teeth",
-        "unstable [% of speeds]",
-        "fastest growth [1/s]",
-        "settled",
+    wide = found.file.tolerances.widened(found.speeds)
+    torsion = (
+        (TORSION, name, "", "", *_what_grows(tongues, wide), "", "")
+        for name, tongues in found.torsion.items()
     )
-    return Section("Models", (strips, Table(headings, rows, "Models and what they come to")))
+    return (*disk, *torsion)
+
+
+def _what_grows(found: Sequence[Tongue], speeds: tuple[float, float]) -> tuple[str, ...]:
+    """Part of the speeds that is unstable, the widest intervals, and what grows fastest."""
+    where = told(tuple((tongue.lower, tongue.upper) for tongue in found)) if found else "none"
+    return f"{100 * unstable_share(found, speeds):.3g}", where.replace(" rpm", ""), *_fastest(found)
 
 
 def _tolerances(found: Assessment) -> Section:
@@ -143,22 +167,6 @@ def _fastest(found: Sequence[Tongue]) -> tuple[str, str]:
     return tongue.label, f"{tongue.growth_rate:.3g}"
 
 
-def _corner_columns(worst: Mapping[str, WorstCase]) -> dict[str, list[object]]:
-    """List corners of tolerances row by row: a tongue, or that there is none."""
-    headings = ("model", "corner", "label", "lower_rpm", "upper_rpm", "peak_rpm", "largest_growth_per_s")
-    none = (math.nan,) * 3
-    rows = [
-        (name, corner(factors, case.factors), *one)
-        for name, case in worst.items()
-        for factors, found in case.corners.items()
-        for one in (
-            [(t.label, *(float(rpm(x)) for x in (t.lower, t.upper, t.peak)), t.growth_rate) for t in found]
-            or [("", *none, 0.0)]
-        )
-    ]
-    return {heading: list(column) for heading, column in zip(headings, zip(*rows, strict=True), strict=True)}
-
-
 def _dynamic_load(found: Assessment) -> Section:
     parts: list[Paragraph | Picture | Table | Listing] = [*_in_torsion(found), *_of_the_disk(found)]
     return Section("Dynamic load", tuple(parts))
@@ -197,47 +205,37 @@ def _of_the_disk(found: Assessment) -> Iterator[Paragraph | Picture | Table | Li
         "Bands over speed around one that widen at resonances",
     )
     rows = tuple(
-        (name, str(label), f"{float(rpm(speed)):.4g}", f"{force:.4g}")
-        for name, data in computed.items()
-        for label, speed, force in _highest_peaks(data)
+        (
+            f"{each.variant.teeth}; {each.variant.force}",
+            *peak,
+            _basis_of(each.variant),
+            "yes" if each.settled else "NO",
+        )
+        for each in found.disk_responses
+        if each.data is not None
+        for peak in _highest_peaks(each.data, 3 if each.settled else 2)
     )
     if rows:
-        headings = ("model", "mode / harmonic of the mesh", "speed [rpm]", "rms of the force [N]")
-        yield Table(headings, rows, "Highest resonances of the force of a mesh")
+        forces = ("rms of the force [N]", "lowest less static [N]", "highest less static [N]")
+        headings = ("model", "mode / harmonic of the mesh", "speed [rpm]", *forces)
+        yield Table((*headings, _BASIS, "settled"), rows, "Highest resonances of the force of a mesh")
 
 
-def _highest_peaks(data: xr.Dataset) -> Iterator[tuple[str, float, float]]:
-    """Label, speed [rad/s] and rms [N] of the highest peaks, the highest first."""
+def _highest_peaks(data: xr.Dataset, digits: int) -> Iterator[tuple[str, ...]]:
+    """Label, speed [rpm], rms, lowest and highest force [N] of the highest peaks, the highest first."""
     for i in np.argsort(-data["peak_force_rms"].values)[:_PEAKS].tolist():
         yield (
             str(data["peak_label"].values[i]),
-            float(data["peak_speed"].values[i]),
-            float(data["peak_force_rms"].values[i]),
+            rounded(float(rpm(data["peak_speed"].values[i])), digits + 1),
+            *(
+                rounded(float(data[f"peak_force_{name}"].values[i]), digits)
+                for name in ("rms", "lowest", "highest")
+            ),
         )
 
 
 def _left_out(found: Assessment) -> Section:
     return Section("Left out", (Listing((*found.left_out, found.not_varied)),))
-
-
-def _response_columns(table: xr.Dataset) -> dict[str, list[object]]:
-    """List forced responses row by row: a model, a speed, a pinion; models without one are in the arrays alone."""
-    forces = {
-        name: str(table[name].attrs["units"]) for name in ("force_rms", "force_lowest", "force_highest")
-    }
-    headings = ("contact", "force", "teeth", "speed_rpm", "pinion", *(f"{n}_{u}" for n, u in forces.items()))
-    rows = [
-        (
-            *(str(table[name].values[model]) for name in ("contact", "force", "teeth")),
-            float(rpm(table["speed"].values[at])),
-            pinion + 1,
-            *(float(table[name].values[model, at, pinion]) for name in forces),
-        )
-        for model in np.flatnonzero(table["none_because"].values == "").tolist()
-        for at in range(table.sizes["speed"])
-        for pinion in range(table.sizes["pinion"])
-    ]
-    return {heading: list(column) for heading, column in zip(headings, zip(*rows, strict=True), strict=True)}
 
 
 def write_assessment(found: Assessment, folder: str | Path) -> Path:
@@ -260,17 +258,19 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
         If the folder cannot be written to.
     """
     table = found.table()
-    columns = {name: table[name].values.tolist() for name in ("contact", "force", "teeth", *table.data_vars)}
     with folder_written_whole(Path(folder)) as place:
-        write_table(columns, place / "models.csv")
+        write_table(model_columns(table), place / "models.csv")
         labelled.save(table, place / "models.nc")
         if (torsion := found.torsion_table) is not None:
             labelled.save(torsion, place / "torsion_response.nc")
         if any(case.corners for case in found.worst.values()):
-            write_table(_corner_columns(found.worst), place / "tolerances.csv")
+            write_table(corner_columns(found.worst), place / "tolerances.csv")
         if (response := found.response_table) is not None:
             labelled.save(response, place / "disk_response.nc")
-            write_table(_response_columns(response), place / "disk_response.csv")
+            write_table(response_columns(response), place / "disk_response.csv")
+        if (peaks := found.response_peaks) is not None:
+            labelled.save(peaks, place / "disk_response_peaks.nc")
+            write_table(peak_columns(peaks), place / "disk_response_peaks.csv")
         title = f"Assessment of {found.file.name}"
         (place / PAGE).write_text(page(title, sections(found)), encoding="utf-8")
     return Path(folder, PAGE)

@@ -9,7 +9,6 @@ nothing gives way, or everything evenly, there is no transmission error, and tha
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -25,8 +24,6 @@ from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.maps.response_map import frequency_response
 from facegear.mechanics.disk import modal_mass
 from facegear.mechanics.transverse import FaceGears
-from facegear.support.labelled import text, variable
-from facegear.support.parameters import rpm
 from facegear.support.types import FloatArray
 
 RIGID = "rigid teeth do not give way, and conjugate flanks without errors turn the gear evenly"
@@ -43,6 +40,9 @@ _CIRCLES = 2
 _RESOLUTION = 1e-4
 # Part of the speeds that may be unstable: where little is steady there is little to say.
 _MOST_UNSTABLE = 0.5
+
+MOST_MOVED = 0.1
+"""Part by which two bases may differ in the largest force where it counts as settled."""
 
 RESPONSE_SPEEDS = 46
 """Speeds of a forced response of the disk, besides those at which the mesh meets a natural frequency between them."""
@@ -113,8 +113,23 @@ class DiskResponse:
     reason: str
     before: float = math.nan
 
+    @cached_property
+    def largest(self) -> float:
+        """By how much the force of a mesh departs from the static one at most [N]; NaN where nothing is known."""
+        return math.nan if self.data is None else largest_departure(self.data)[0]
 
-def _largest(data: xr.Dataset) -> tuple[float, float]:
+    @property
+    def moved(self) -> float:
+        """Part of :attr:`largest` by which the basis before differs, 0 up; NaN where there is none."""
+        return abs(self.before / self.largest - 1.0) if self.largest > 0.0 else math.nan
+
+    @property
+    def settled(self) -> bool:
+        """Whether two bases agree on :attr:`largest`, to within a tenth of it."""
+        return self.moved <= MOST_MOVED
+
+
+def largest_departure(data: xr.Dataset) -> tuple[float, float]:
     """By how much the force of a mesh departs from the static one at most [N], and at which speed [rad/s]."""
     known = data.dropna("speed", subset=["force_highest"])
     speeds = np.concatenate([np.repeat(known.speed.values, known.sizes["load"]), data["peak_speed"].values])
@@ -197,7 +212,7 @@ def disk_response(outcome: Outcome, force: float, speeds: FloatArray) -> DiskRes
         data, before = normal_forces(model, error, speeds), math.nan
         if diameters > 2:
             fewer = with_basis(variant.model, circles, diameters - 2)
-            before = _largest(normal_forces(fewer, error, speeds))[0]
+            before = largest_departure(normal_forces(fewer, error, speeds))[0]
         return DiskResponse(replace(variant, model=model), size, data, "", before)
     except (ArithmeticError, ValueError) as problem:
         return DiskResponse(variant, 0.0, None, str(problem))
@@ -240,110 +255,3 @@ def _swing(error: PiecewiseChebyshev) -> float:
     inside = np.linspace(0.0, 1.0, 65)[:-1]
     values = error((edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * inside).ravel())
     return float(np.ptp(np.concatenate([values, error(edges[1:-1], "left")])))
-
-
-# --- what is said of them -----------------------------------------------------------------------------------------
-
-
-def sentences(found: Sequence[DiskResponse], static: float) -> tuple[str, ...]:
-    """Say how far the force of a mesh departs from its static value [N], and of which models it does not, and why."""
-    told = [_sentence(each, each.data, static) for each in found if each.data is not None]
-    missing: dict[str, list[str]] = {}
-    for each in found:
-        if each.data is None:
-            missing.setdefault(each.reason, []).append(f"{each.variant.teeth}; {each.variant.force}")
-    if missing and not told:
-        told.append("No model of the disk with the file's own contact has a forced response.")
-    for reason, names in missing.items():
-        told.append(f"No forced response of the disk ({'; '.join(dict.fromkeys(_joined(names)))}): {reason}.")
-    return tuple(told)
-
-
-def _joined(names: Sequence[str]) -> list[str]:
-    """Name teeth without the direction of the force where both are there."""
-    teeth = [name.partition("; ")[0] for name in names]
-    return [
-        kind if teeth.count(kind) > 1 else name.replace("; ", " and ")
-        for kind, name in zip(teeth, names, strict=True)
-    ]
-
-
-def _sentence(found: DiskResponse, data: xr.Dataset, static: float) -> str:
-    variant = found.variant
-    known = data.dropna("speed", subset=["force_highest"])
-    where = f"{variant.contact}; {variant.force}; {variant.teeth}"
-    if not known.sizes["speed"]:
-        return f"Forced response of the disk ({where}): unstable at all speeds looked at, nothing is steady."
-    largest, speed = _largest(data)
-    parted = int((known["force_lowest"].min("load").values < -static).sum())
-    count, every = known.sizes["speed"], data.sizes["speed"]
-    resonance = ""
-    if data.sizes["peak"]:
-        top = int(data["peak_force_rms"].values.argmax())
-        place = float(rpm(data["peak_speed"].values[top]))
-        resonance = f"; its strongest resonance is {data['peak_label'].values[top]} at {place:.4g} rpm"
-    before = ""
-    if math.isfinite(found.before):
-        before = f" In a basis with two nodal diameters fewer it would be {found.before:.4g} N."
-    return (
-        f"Forced response of the disk ({where}): a static transmission error of {1e6 * found.error:.3g} µm from peak "
-        f"to peak, under the load of the drive, and as long as flanks do not part, moves the force of a "
-        f"mesh by up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / static:.3g} times the static {static:.4g} "
-        f"N{resonance}.{before} Of {every} speeds it is stable at "
-        f"{count}, and flanks would part at {parted}."
-    )
-
-
-def response_table(found: Sequence[DiskResponse], parameters: str) -> xr.Dataset | None:
-    """Put forced responses into arrays, those without one as NaN with the reason; None if no model has one.
-
-    Parameters
-    ----------
-    found : sequence of DiskResponse
-    parameters : str
-        Of the drive, for provenance.
-
-    Returns
-    -------
-    xarray.Dataset or None
-        Over ``model``, ``speed`` [rad/s] and ``pinion``: ``force_rms``, ``force_lowest``, ``force_highest``, forces of
-        a whole mesh along the normal without the static one [N]; over ``model``: ``transmission_error`` [m].
-    """
-    computed = [each.data for each in found if each.data is not None]
-    if not computed:
-        return None
-    first = computed[0]
-    nothing = np.full((first.sizes["speed"], first.sizes["load"]), np.nan)
-
-    def stacked(name: str) -> FloatArray:
-        return np.stack([nothing if each.data is None else each.data[name].values for each in found])
-
-    dims = ("model", "speed", "pinion")
-    meanings = {
-        "force_rms": "Rms of what varies of the force of a mesh",
-        "force_lowest": "Lowest force of a mesh less the static one",
-        "force_highest": "Highest force of a mesh less the static one",
-    }
-    swings = [each.error for each in found]
-    name = "Static transmission error from peak to peak, along the line of action"
-    labels = {
-        key: text("model", [getattr(each.variant, key) for each in found], words)
-        for key, words in (("contact", "Contact"), ("force", "Driving force"), ("teeth", "Teeth"))
-    }
-    return xr.Dataset(
-        {
-            **{
-                key: variable(dims, stacked(key), words, "N", rtol=1e-6, atol=1e-6)
-                for key, words in meanings.items()
-            },
-            "transmission_error": variable("model", swings, name, "m", rtol=1e-6, atol=1e-15),
-        },
-        {
-            "model": np.arange(len(found)),
-            "speed": ("speed", first.speed.values, {"units": "rad/s", "long_name": "Speed of the face gear"}),
-            "pinion": np.arange(first.sizes["load"]),
-            **labels,
-            "none_because": text("model", [each.reason for each in found], "Why there is none"),
-        },
-        {"parameters": parameters},
-    )

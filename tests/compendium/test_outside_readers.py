@@ -106,7 +106,10 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
         f"force_{name}": (("speed", "load"), [[1.0], [np.nan]])
         for name in ("mean", "rms", "lowest", "highest")
     }
-    data = xr.Dataset(forces | peaks | {"peak_label": ("peak", ["1/1"])}, {"speed": [60.0, 61.0]})
+    data = xr.Dataset(
+        forces | peaks | {"peak_label": ("peak", ["1/1"]), "peak_load": ("peak", [0])},
+        {"speed": [60.0, 61.0]},
+    )
     found = Assessment(
         file,
         tuple(Outcome(variant, (), True) for variant in variants),
@@ -119,7 +122,7 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     )
     folder = write_assessment(found, tmp_path / "assessment").parent
     arrays = sorted(path.name for path in folder.glob("*.nc"))
-    assert arrays == ["disk_response.nc", "models.nc", "torsion_response.nc"]
+    assert arrays == ["disk_response.nc", "disk_response_peaks.nc", "models.nc", "torsion_response.nc"]
     for name in arrays:
         assert_same(folder / name)
     models, response = (pd.read_csv(folder / f"{name}.csv") for name in ("models", "disk_response"))
@@ -127,7 +130,7 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     assert response["force_rms_N"].tolist()[0] == 1.0
     assert response["force_rms_N"].isna().tolist() == [False, True]
     assert response["speed_rpm"].tolist() == pytest.approx([572.957795131, 582.507091716])
-    assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 2 + [".html"] + [".nc"] * 3
+    assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 3 + [".html"] + [".nc"] * 4
 
 
 def test_points_of_a_tooth_are_read_by_pandas(tmp_path):

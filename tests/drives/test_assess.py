@@ -10,6 +10,7 @@ import xarray as xr
 from facegear.drives.assess import _in_torsion, assess
 from facegear.drives.assessment import Assessment
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
+from facegear.drives.basis import with_basis
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import told
@@ -52,7 +53,7 @@ class TestVerdict:
         assert (found.verdict, found.decides) == ("safe under all", ())
         assert found.headline == (
             "Safe under all: from 100 to 1000 rpm, of 2 models of the disk's motion none is unstable at any speed. "
-            "Stable under all of them: 100 to 1000 rpm. Unstable under all of them: no speed."
+            "Speeds at which every model is stable: 100 to 1000 rpm. Speeds at which all models are unstable: no speed."
         )
 
     def test_unstable_under_all_though_not_at_the_same_speeds(self):
@@ -61,7 +62,7 @@ class TestVerdict:
             outcome("Tregold", DEAD, RIGID_TOTAL, tongue(250, 400)),
         )
         assert found.verdict == "unstable under all"
-        assert "Unstable under all of them: 250 to 300 rpm." in found.headline
+        assert "Speeds at which all models are unstable: 250 to 300 rpm." in found.headline
         assert told(found.always_stable) == "100 to 200, 400 to 1000 rpm"
         assert (
             "Worst: parametric resonance (1+8)/1 at 250 rpm, growing by 2 1/s (Tregold; force keeps"
@@ -88,6 +89,8 @@ class TestVerdict:
         assert found.verdict == "unstable under all"
         assert told(found.always_unstable) == "600 to 620 rpm"
         assert "(torsion; Tregold, arm as printed)" in found.headline
+        assert "The one model of torsion is unstable somewhere." in found.headline
+        assert "unstable: 600 to 620 rpm" in found.headline
         torsion["true sweep, arm as printed"] = ()
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
         assert (found.verdict, found.decides) == ("depends", ("contact or arm of the mesh force in torsion",))
@@ -158,6 +161,48 @@ class TestVerdict:
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
         assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn them.")
+
+
+def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all():
+    torsion = {
+        "Tregold, arm as printed": (tongue(600, 620),),
+        "true sweep, arm as printed": (tongue(700, 720),),
+    }
+    headline = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion).headline
+    assert headline.startswith("Unstable under all, because of torsion; from 100 to 1000 rpm, of 1 models")
+    assert "Each of the 2 models of torsion is unstable somewhere." in headline
+    assert "every model is stable: 100 to 600, 620 to 700, 720 to 1000 rpm." in headline
+    assert "of the disk's motion, or all of torsion, are unstable: no speed." in headline
+
+
+def test_models_are_listed_with_their_basis_and_those_of_torsion_too(tmp_path):
+    """Each in its own basis, which is not that of the file, as the provenance says."""
+    richer = with_basis(CASE_1.transverse, 2, 5)
+    disk = Outcome(Variant("Tregold", DEAD, RIGID, richer), (tongue(200, 300), tongue(400, 410, 3.0)), True)
+    file = replace(CASE_1, tolerances=Tolerances(speed=0.1))
+    found = assessment(disk, torsion={"Tregold, arm as printed": (tongue(95, 97, 90.0),)}, file=file)
+    table = found.table()
+    assert table["motion"].values.tolist() == ["disk", "torsion"]
+    assert table["contact"].values.tolist() == ["Tregold", "Tregold, arm as printed"]
+    assert (float(table["nodal_circles"][0]), float(table["nodal_diameters"][0])) == (2.0, 5.0)
+    assert np.isnan(table["nodal_circles"][1])
+    assert np.isnan(table["settled"][1])
+    assert table["largest_growth"].values.tolist() == [3.0, 90.0]
+    np.testing.assert_allclose(rpm(table["fastest_speed"].values), [405.0, 96.0], rtol=1e-12)
+    assert table["unstable_rpm"].values.tolist() == ["200 to 300; 400 to 410", "95 to 97"]
+    # In torsion over 90 to 1100 rpm.
+    np.testing.assert_allclose(table["unstable_share"], [110 / 900, 2 / 1010], rtol=1e-9)
+    assert table.attrs["parameters"].endswith(
+        "each model in a basis of its own, given beside it, not that of the file"
+    )
+    text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
+    assert all(
+        words in text for words in ("nodal circles, diameters", "2, 5", "200 to 300, 400 to 410", "95 to 97")
+    )
+    rows = (tmp_path / "models.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert rows[1].startswith("disk,Tregold,")
+    assert ",2,5,(1+8)/1,200 to 300; 400 to 410" in rows[1]
+    assert rows[2].startswith('torsion,"Tregold, arm as printed",,,')
 
 
 def test_torsion_is_looked_at_in_the_tolerance_of_speed():

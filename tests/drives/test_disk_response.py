@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
@@ -14,13 +15,14 @@ from facegear.drives.disk_response import (
     EVEN,
     RIGID,
     UNLOADED,
+    DiskResponse,
     Shaken,
     disk_response,
     normal_forces,
-    response_table,
-    sentences,
     transmission_error,
 )
+from facegear.drives.disk_response_table import peaks_table, response_table
+from facegear.drives.disk_response_words import sentences
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.outcome import Outcome
 from facegear.drives.variants import Variant, other_teeth, own_teeth, plain_contacts, with_own_teeth
@@ -231,6 +233,60 @@ def test_an_assessment_says_of_every_model_how_it_moves_or_why_not():
     assert float(shaken.force_highest.min()) > 0.0
     largest = max(abs(float(shaken[f"force_{end}"].isel(model=1).max())) for end in ("lowest", "highest"))
     assert f"{largest / static:.2g}"[0] in said[1]
+
+
+def forced(before, parted=-50.0, peak=-120.0):
+    """Make a response whose forces are known, of 1234.5 N at most between its speeds; static is 100 N."""
+    variant = flexible(CASE_1, "equal")
+    numbers = {"rms": 300.0, "lowest": parted, "highest": 60.0}
+    forces = {f"force_{name}": (("speed", "load"), [[value], [value]]) for name, value in numbers.items()}
+    ends = {"speed": [31.0, 32.0], "load": [0, 0], "force_rms": [700.0, 20.0]}
+    ends |= {"force_lowest": [peak, -40.0], "force_highest": [1234.5, 30.0], "label": ["4/1", "5/2"]}
+    peaks = {f"peak_{name}": ("peak", values) for name, values in ends.items()}
+    return DiskResponse(variant, 1e-6, xr.Dataset(forces | peaks, {"speed": [30.0, 33.0]}), "", before)
+
+
+def test_a_force_that_another_basis_does_not_confirm_is_not_settled():
+    """A tenth of 1234.5 N is the most that two bases may differ by; open forces have two digits."""
+    close, off, alone = forced(1112.0), forced(1110.0), forced(math.nan)
+    assert [each.settled for each in (close, off, alone)] == [True, False, False]
+    assert off.moved == pytest.approx(124.5 / 1234.5, rel=1e-12)
+    said = sentences((close, off, alone), 100.0)
+    assert "by up to 1230 N" in said[0]
+    assert "12.3 times the static 100 N" in said[0]
+    assert "NOT SETTLED" not in said[0]
+    assert "two nodal diameters fewer it is 1110 N." in said[0]
+    assert "by up to 1200 N" in said[1]
+    assert "12 times the static" in said[1]
+    assert "NOT SETTLED: computed with 0 nodal circles and 1 nodal diameters" in said[1]
+    assert "1100 N, 10.1 % off, where at most 10 % count as settled" in said[1]
+    assert "NOT SETTLED: computed with 0 nodal circles and 1 nodal diameters alone" in said[2]
+    table = response_table((close, off, alone), "as given")
+    assert table["settled"].values.tolist() == [1.0, 0.0, 0.0]
+    assert (table["nodal_circles"].values.tolist(), table["nodal_diameters"].values.tolist()) == (
+        [0.0] * 3,
+        [1.0] * 3,
+    )
+
+
+def test_flanks_that_part_at_a_resonance_between_the_speeds_are_told():
+    said = sentences((forced(1234.0),), 100.0)[0]
+    assert said.endswith(
+        "Of 2 speeds it is stable at 2, and flanks would part at 0; of 2 peaks of resonances between them, at 1."
+    )
+    quiet = sentences((forced(1234.0, peak=-99.0),), 100.0)[0]
+    assert quiet.endswith("at 0; of 2 peaks of resonances between them, at 0.")
+
+
+def test_peaks_are_kept_with_their_ends_and_the_model_they_are_of():
+    rigid = replace(forced(1.0), data=None, reason=RIGID)
+    found = peaks_table((rigid, forced(1234.0)), "as given")
+    assert found["peak_speed"].values.tolist() == [31.0, 32.0]
+    assert found["force_highest"].values.tolist() == [1234.5, 30.0]
+    assert found["force_lowest"].values.tolist() == [-120.0, -40.0]
+    assert found["label"].values.tolist() == ["4/1", "5/2"]
+    assert found["teeth"].values.tolist() == [forced(1.0).variant.teeth] * 2
+    assert peaks_table((rigid,), "as given") is None
 
 
 def test_without_any_response_the_first_sentence_says_so():

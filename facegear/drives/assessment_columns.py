@@ -1,0 +1,70 @@
+"""Tables beside the page of an assessment: models, corners of tolerances, forced responses and their peaks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from facegear.drives.growth_words import corner
+from facegear.drives.tolerances import WorstCase
+from facegear.support.parameters import rpm
+
+
+def model_columns(table: xr.Dataset) -> dict[str, list[object]]:
+    """List models row by row, from :func:`facegear.drives.assessment_table.model_table`."""
+    names = ("motion", "contact", "force", "teeth", *map(str, table.data_vars), "fastest", "unstable_rpm")
+    return {name: table[name].values.tolist() for name in names}
+
+
+def corner_columns(worst: Mapping[str, WorstCase]) -> dict[str, list[object]]:
+    """List corners of tolerances row by row: a tongue, or that there is none."""
+    headings = ("model", "corner", "label", "lower_rpm", "upper_rpm", "peak_rpm", "largest_growth_per_s")
+    none = (math.nan,) * 3
+    rows = [
+        (name, corner(factors, case.factors), *one)
+        for name, case in worst.items()
+        for factors, found in case.corners.items()
+        for one in (
+            [(t.label, *(float(rpm(x)) for x in (t.lower, t.upper, t.peak)), t.growth_rate) for t in found]
+            or [("", *none, 0.0)]
+        )
+    ]
+    return {heading: list(column) for heading, column in zip(headings, zip(*rows, strict=True), strict=True)}
+
+
+def response_columns(table: xr.Dataset) -> dict[str, list[object]]:
+    """List forced responses row by row: a model, a speed, a pinion; models without one are in the arrays alone."""
+    forces = {
+        name: str(table[name].attrs["units"]) for name in ("force_rms", "force_lowest", "force_highest")
+    }
+    basis = ("nodal_circles", "nodal_diameters", "settled")
+    of_model = ("contact", "force", "teeth", *basis)
+    headings = (*of_model, "speed_rpm", "pinion", *(f"{n}_{u}" for n, u in forces.items()))
+    rows = [
+        (
+            *(str(table[name].values[model]) for name in ("contact", "force", "teeth")),
+            *(int(table[name].values[model]) for name in basis),
+            float(rpm(table["speed"].values[at])),
+            pinion + 1,
+            *(float(table[name].values[model, at, pinion]) for name in forces),
+        )
+        for model in np.flatnonzero(table["none_because"].values == "").tolist()
+        for at in range(table.sizes["speed"])
+        for pinion in range(table.sizes["pinion"])
+    ]
+    return {heading: list(column) for heading, column in zip(headings, zip(*rows, strict=True), strict=True)}
+
+
+def peak_columns(table: xr.Dataset) -> dict[str, list[object]]:
+    """List the peaks of forced responses row by row."""
+    names = {name: table[name].values.tolist() for name in ("contact", "force", "teeth", "label")}
+    forces = ("force_rms", "force_lowest", "force_highest")
+    return {
+        **names,
+        "speed_rpm": rpm(table["peak_speed"].values).tolist(),
+        "pinion": [int(number) + 1 for number in table["pinion"].values],
+        **{f"{name}_{table[name].attrs['units']}": table[name].values.tolist() for name in forces},
+    }

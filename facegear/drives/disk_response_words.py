@@ -1,0 +1,96 @@
+"""Forced response of the disk in words: how far it moves the force of a mesh, in which basis, or why not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import xarray as xr
+
+from facegear.drives.disk_response import MOST_MOVED, DiskResponse, largest_departure
+from facegear.support.parameters import rpm
+
+# Significant digits of a force that two bases agree on, and of one that they do not.
+_SETTLED_DIGITS, _OPEN_DIGITS = 3, 2
+
+
+def sentences(found: Sequence[DiskResponse], static: float) -> tuple[str, ...]:
+    """Say how far the force of a mesh departs from its static value [N], and of which models it does not, and why."""
+    told = [_sentence(each, each.data, static) for each in found if each.data is not None]
+    missing: dict[str, list[str]] = {}
+    for each in found:
+        if each.data is None:
+            missing.setdefault(each.reason, []).append(f"{each.variant.teeth}; {each.variant.force}")
+    if missing and not told:
+        told.append("No model of the disk with the file's own contact has a forced response.")
+    for reason, names in missing.items():
+        told.append(f"No forced response of the disk ({'; '.join(dict.fromkeys(_joined(names)))}): {reason}.")
+    return tuple(told)
+
+
+def _joined(names: Sequence[str]) -> list[str]:
+    """Name teeth without the direction of the force where both are there."""
+    teeth = [name.partition("; ")[0] for name in names]
+    return [
+        kind if teeth.count(kind) > 1 else name.replace("; ", " and ")
+        for kind, name in zip(teeth, names, strict=True)
+    ]
+
+
+def _sentence(found: DiskResponse, data: xr.Dataset, static: float) -> str:
+    variant = found.variant
+    known = data.dropna("speed", subset=["force_highest"])
+    where = f"{variant.contact}; {variant.force}; {variant.teeth}"
+    if not known.sizes["speed"]:
+        return f"Forced response of the disk ({where}): unstable at all speeds looked at, nothing is steady."
+    digits = _SETTLED_DIGITS if found.settled else _OPEN_DIGITS
+    largest, speed = largest_departure(data)
+    resonance = ""
+    if data.sizes["peak"]:
+        top = int(data["peak_force_rms"].values.argmax())
+        place = rounded(float(rpm(data["peak_speed"].values[top])), digits + 1)
+        resonance = f"; its strongest resonance is {data['peak_label'].values[top]} at {place} rpm"
+    return (
+        f"Forced response of the disk ({where}): a static transmission error of {1e6 * found.error:.3g} µm from peak "
+        f"to peak, under the load of the drive, and as long as flanks do not part, moves the force of a "
+        f"mesh by up to {rounded(largest, digits)} N, at {rounded(float(rpm(speed)), digits + 1)} rpm: "
+        f"{rounded(largest / static, digits)} times the static {static:.4g} N{resonance}. "
+        f"{_basis(found, digits)} {_parted(data, static)}"
+    )
+
+
+def _basis(found: DiskResponse, digits: int) -> str:
+    """Say in which basis it is, and whether that suffices."""
+    body = found.variant.model.gear.body
+    here = f"Computed with {body.nodal_circles} nodal circles and {body.nodal_diameters} nodal diameters"
+    if not math.isfinite(found.moved):
+        return f"NOT SETTLED: {here[0].lower()}{here[1:]} alone, in no other basis to compare with."
+    before = f"with two nodal diameters fewer it is {rounded(found.before, digits)} N"
+    if found.settled:
+        return f"{here}; {before}."
+    return (
+        f"NOT SETTLED: {here[0].lower()}{here[1:]}; {before}, {100 * found.moved:.3g} % off, where at most "
+        f"{100 * MOST_MOVED:g} % count as settled: a larger basis may give another force."
+    )
+
+
+def _parted(data: xr.Dataset, static: float) -> str:
+    """Say at how many speeds, and at how many peaks between them, flanks would part."""
+    known = data.dropna("speed", subset=["force_highest"])
+    parted = int((known["force_lowest"].min("load").values < -static).sum())
+    words = f"Of {data.sizes['speed']} speeds it is stable at {known.sizes['speed']}, and flanks would part at {parted}"
+    if not (peaks := data.sizes["peak"]):
+        return f"{words}."
+    beyond = int((data["peak_force_lowest"].values < -static).sum())
+    return f"{words}; of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them, at {beyond}."
+
+
+def rounded(number: float, digits: int) -> str:
+    """Write a number to so many significant digits, without an exponent where others would be zeros.
+
+    Examples
+    --------
+    >>> rounded(12345.6, 2), rounded(0.12345, 3)
+    ('12000', '0.123')
+    """
+    return f"{float(f'{number:.{digits}g}'):.10g}"
