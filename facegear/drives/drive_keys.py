@@ -330,7 +330,8 @@ _TOLERANCES = Section(
     (
         _tolerance(
             "stiffness_percent",
-            "of stiffness: bearings and flexible teeth together; in torsion, the teeth of `gearbox`",
+            "of stiffness: bearings and teeth together, those of a contact under load too (up to $c_f = 1$); in "
+            "torsion, the teeth of `gearbox`",
         ),
         _tolerance(
             "damping_percent",

@@ -28,6 +28,7 @@ from facegear.floquet.models import (
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.closing import ClosingValue, growth_peaks
 from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import keep, positive, within
@@ -48,7 +49,8 @@ class Tolerances:
     Attributes
     ----------
     stiffness : float
-        Of bearings and flexible teeth, together, and of the mesh of the gearbox [-], 0 to 0.5.
+        Of bearings and teeth, together, and of the mesh of the gearbox [-], 0 to 0.5. Teeth are flexible ones, and
+        those by which a contact under load is found, with c_f of (7-2) up to 1.
     damping : float
         Of bearings, flexible teeth and the body's material, together, and of the mesh of the gearbox [-], 0 to 0.5.
     speed : float
@@ -106,6 +108,15 @@ AS_GIVEN = Tolerances()
 """No tolerances."""
 
 
+def _with_stiffer_teeth(contact: Contact, factor: float) -> Contact:
+    """Return a contact as it is with teeth so many times as stiff; only under load it depends on that."""
+    if (own := getattr(contact.path, "correction_factor", None)) is None:
+        return contact
+    # Without bodies and bearings that give way, teeth are as stiff as they are.
+    path: Any = replace(contact.path, correction_factor=min(1.0, factor * own))  # type: ignore[type-var]
+    return replace(contact, path=path)
+
+
 @dataclass(frozen=True)
 class Toleranced:
     """A drive with other stiffness and damping.
@@ -114,7 +125,8 @@ class Toleranced:
     ----------
     model : FaceGears
     stiffness_factor : float
-        Of bearings and flexible teeth; dampings keep their values in N s/m.
+        Of bearings and teeth; dampings keep their values in N s/m. A contact under load changes with its teeth, which
+        are at most as stiff as c_f = 1 of (7-2) has it.
     damping_factor : float
         Of bearings, flexible teeth and the material of the body.
 
@@ -141,6 +153,7 @@ class Toleranced:
                 s, d = _POWERS[name]
                 factor = self.stiffness_factor**s * self.damping_factor**d
                 gear = replace_parameter(gear, name, factor * value_of(gear, name))
+        gear = replace(gear, contact=_with_stiffer_teeth(gear.contact, self.stiffness_factor))
         # The disk's stiffness by which a bearing is measured moves with its damping, if little.
         load = replace(
             gear.load,
@@ -169,7 +182,8 @@ class TolerancedGearbox:
     torsional : Torsional or HeavyShafts
         Shafts that have mass keep their length: stiffer ones are thicker, and heavier in proportion.
     mesh_stiffness_factor, shaft_stiffness_factor : float
-        Of the tooth pairs and of both shafts; dampings keep their values in N s/m and N m s/rad.
+        Of the tooth pairs and of both shafts; dampings keep their values in N s/m and N m s/rad. A contact under load
+        changes with its tooth pairs, as for :class:`Toleranced`.
     mesh_damping_factor, shaft_damping_factor : float
         Of the tooth pairs and of both shafts.
 
@@ -200,7 +214,9 @@ class TolerancedGearbox:
             **{f"{shaft}_damping": self.shaft_damping_factor for shaft in ("input", "output")},
         }
         gearbox = replace(box, **{name: factor * getattr(box, name) for name, factor in factors.items()})
-        return replace_at(self.torsional, (*inside, "gearbox"), gearbox)
+        changed = replace_at(self.torsional, (*inside, "gearbox"), gearbox)
+        contact = _with_stiffer_teeth(massless(changed).contact, self.mesh_stiffness_factor)
+        return replace_at(changed, (*inside, "contact"), contact)
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -183,3 +183,43 @@ def test_a_file_gives_tolerances_of_shafts_where_it_has_some():
         match=r"^[^:]*: tolerances.shaft_stiffness_percent must be 0 or left out without a section gearbox.*got 10$",
     ):
         parse_drive(without + given)
+
+
+def test_a_contact_under_load_is_that_of_a_file_with_stiffer_teeth():
+    """The corner at 1.1 is the drive whose file says 1.1 times c_f, up to 1, where bodies give way no more."""
+    text = (DRIVES / "localized.yaml").read_text(encoding="utf-8")
+
+    def drive(factor):
+        return parse_drive(
+            f"{text}\nteeth:\n  tooth_damping_us: 30\n  correction_factor: {factor}\n"
+        ).transverse
+
+    own, stiffer = drive(0.5), drive(0.55)
+    changed = Toleranced(own, stiffness_factor=1.1).changed
+    assert changed.gear.contact.path.correction_factor == pytest.approx(0.55, rel=1e-14)
+    assert changed.mesh_stiffness == pytest.approx(stiffer.mesh_stiffness, rel=1e-12)
+    at = np.linspace(0.0, 1.0, 101)[:-1] + 0.003
+    places, expected, before = (
+        np.array([load.shape(at) for load in model.system(50.0).loads]) for model in (changed, stiffer, own)
+    )
+    size = np.abs(expected).max()
+    assert_allclose(places, expected, atol=1e-9 * size)
+    assert np.abs(before - expected).max() > 1e-4 * size
+    assert Toleranced(drive(0.8), stiffness_factor=1.5).changed.gear.contact.path.correction_factor == 1.0
+    # What does not depend on the stiffness of teeth stays.
+    assert Toleranced(TREGOLD, stiffness_factor=1.1).changed.gear.contact == TREGOLD.gear.contact
+
+
+def test_a_contact_under_load_changes_with_the_mesh_of_a_gearbox():
+    text = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+    loaded = parse_drive(text.replace("pinion_teeth: 31", "pinion_teeth: 31\n  shaper_teeth: 33")).torsional
+    own = loaded.contact.path.correction_factor
+    changed = TolerancedGearbox(loaded, mesh_stiffness_factor=1.1).changed
+    assert changed.contact.path.correction_factor == pytest.approx(1.1 * own, rel=1e-14)
+    assert changed.gearbox.mesh_stiffness == pytest.approx(
+        1.1 * loaded.gearbox.in_si.mesh_stiffness, rel=1e-14
+    )
+    heavy = TolerancedGearbox(
+        HeavyShafts(loaded, input_length=0.1, output_length=0.1), mesh_stiffness_factor=0.8
+    ).changed
+    assert heavy.torsional.contact.path.correction_factor == pytest.approx(0.8 * own, rel=1e-14)
