@@ -62,7 +62,9 @@ def _sentence(found: DiskResponse, data: xr.Dataset, static: float) -> str:
 def _basis(found: DiskResponse, digits: int) -> str:
     """Say in which basis it is, and whether that suffices."""
     body = found.variant.model.gear.body
-    here = f"Computed with {body.nodal_circles} nodal circles and {body.nodal_diameters} nodal diameters"
+    here = (
+        f"Computed with M = {body.nodal_circles} nodal circles and N = {body.nodal_diameters} nodal diameters"
+    )
     if not math.isfinite(found.moved):
         return f"NOT SETTLED: {here[0].lower()}{here[1:]} alone, in no other basis to compare with."
     before = f"with two nodal diameters fewer it is {rounded(found.before, digits)} N"

@@ -258,9 +258,9 @@ def test_a_force_that_another_basis_does_not_confirm_is_not_settled():
     assert "two nodal diameters fewer it is 1110 N." in said[0]
     assert "by up to 1200 N" in said[1]
     assert "12 times the static" in said[1]
-    assert "NOT SETTLED: computed with 0 nodal circles and 1 nodal diameters" in said[1]
+    assert "NOT SETTLED: computed with M = 0 nodal circles and N = 1 nodal diameters" in said[1]
     assert "1100 N, 10.1 % off, where at most 10 % count as settled" in said[1]
-    assert "NOT SETTLED: computed with 0 nodal circles and 1 nodal diameters alone" in said[2]
+    assert "NOT SETTLED: computed with M = 0 nodal circles and N = 1 nodal diameters alone" in said[2]
     table = response_table((close, off, alone), "as given")
     assert table["settled"].values.tolist() == [1.0, 0.0, 0.0]
     assert (table["nodal_circles"].values.tolist(), table["nodal_diameters"].values.tolist()) == (
