@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import re
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -74,8 +74,13 @@ def assess_drive(options: argparse.Namespace) -> int:
 def _require_folder(folder: Path) -> None:
     """Refuse a place that results cannot be written to before they are computed."""
     there = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
-        raise UsageError(f"--output must be a folder that can be written to, got {str(folder)!r}")
+    try:
+        # Permissions do not tell: some file systems take no folder from anybody.
+        tempfile.TemporaryDirectory(prefix=".", dir=there).cleanup()
+    except OSError as problem:
+        raise UsageError(
+            f"--output must be a folder that can be written to, got {str(folder)!r}: {problem.strerror}"
+        ) from None
 
 
 def check(options: argparse.Namespace) -> int:

@@ -31,7 +31,8 @@ def describe(file: DriveFile) -> str:
     """Parameters of a drive file as text, for the provenance of arrays."""
     # The contact ratio in use besides the field: None there is that of the drive.
     ratio = file.transverse.gear.contact_ratio
-    return f"{file.name}: {file.transverse}, {file.torsional}, contact_ratio = {ratio:.10g}"
+    name = file.name.replace("\0", "\ufffd")  # netCDF takes any other character
+    return f"{name}: {file.transverse}, {file.torsional}, contact_ratio = {ratio:.10g}"
 
 
 def tongue_table(found: Sequence[Tongue], parameters: str) -> xr.Dataset:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import os
+import signal
 import sys
 import tempfile
 import threading
@@ -169,6 +170,9 @@ def begin_as_worker() -> None:
     if starter is None or not current_process().name.startswith("LokyProcess"):
         return
     tqdm.set_lock(threading.RLock())
+    # A terminal interrupts workers too. The process that started them is to tell of it, once, and ends them.
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
     # Not whoever is the parent now: the one that started this process may be gone already.
     parent = starter.pid
 

@@ -13,6 +13,9 @@ _BOOK = (":/book/compendium", ":/notebooks")
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
+COMMIT_FILE = "commit.txt"
+"""What a wheel has in place of a repository, in the folder of the package."""
+
 CHANGED = "+changes"
 """Follows the commit where the package, the book's own code or a notebook was changed after it."""
 
@@ -24,10 +27,25 @@ def made_by() -> dict[str, str]:
     -------
     dict of str to str
         ``facegear_version``, and ``facegear_commit`` if it is known: 40 digits, followed by "+changes" where package,
-        the book's own code or notebooks are not as they were committed. An installed package has no commit.
+        the book's own code or notebooks are not as they were committed. An installed package has that of the
+        repository in which its wheel was made.
     """
-    commit = commit_of(_PACKAGE)
+    commit = commit_of(_PACKAGE) or kept_commit(_PACKAGE)
     return {"facegear_version": version("facegear")} | ({"facegear_commit": commit} if commit else {})
+
+
+def kept_commit(package: Path) -> str:
+    """Commit that a wheel keeps of the repository it was made in, empty if there is none.
+
+    Parameters
+    ----------
+    package : Path
+        Folder of the package.
+    """
+    try:
+        return (package / COMMIT_FILE).read_text(encoding="ascii").strip()
+    except OSError:
+        return ""
 
 
 @cache

@@ -1,6 +1,7 @@
 """The command `facegear`, as a stranger calls it: from any folder, with files that are right and wrong."""
 
 import argparse
+import errno
 import os
 import re
 import shutil
@@ -250,3 +251,18 @@ def test_the_notebook_shows_every_section_of_the_page(tmp_path):
     assert shown.count("data:image/svg+xml") == 6
     assert "There is no reference for this file." in shown
     assert (tmp_path / "build" / "drives" / "my_drive" / "tooth_mm.stl").is_file()
+
+
+@pytest.mark.parametrize("command", ["report", "assess"])
+def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_computed(
+    command, tmp_path, capsys, monkeypatch
+):
+    def refuses(*_, **__):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr("tempfile.TemporaryDirectory", refuses)
+    file = str(ROOT / "data" / "drives" / "case_1.yaml")
+    assert main([command, file, "--output", str(tmp_path / "new")]) == 2
+    said = capsys.readouterr().err
+    assert "--output must be a folder that can be written to" in said
+    assert "Permission denied" in said

@@ -1,5 +1,7 @@
 """Arrays of the report on a drive."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -28,6 +30,10 @@ def test_tongues_and_windows_share_out_the_range():
     widths = sum(float((part["upper"] - part["lower"]).sum()) for part in (table, windows))
     assert widths == pytest.approx(220.0)
     assert (windows["upper"] > windows["lower"]).all()
+
+
+def test_a_name_that_netcdf_does_not_take_is_told_without_that_character():
+    assert report_arrays.describe(replace(CASE_1, name="a\0b")).startswith("a\ufffdb: ")
 
 
 def test_windows_of_a_stable_and_of_an_unstable_range():

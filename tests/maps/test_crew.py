@@ -1,6 +1,7 @@
 """Tasks that bring others along, over processes: order, errors, interruptions."""
 
 import os
+import signal
 import time
 
 import psutil
@@ -62,6 +63,18 @@ def test_an_error_of_a_task_is_raised_and_no_process_is_left_at_work():
     below = set(psutil.Process().children(recursive=True)) - before
     _, alive = psutil.wait_procs([p for p in below if "LokyProcess" in " ".join(p.cmdline())], timeout=10.0)
     assert not alive
+
+
+def interruptible():
+    return signal.getsignal(signal.SIGINT) is not signal.SIG_IGN
+
+
+def test_a_terminal_that_interrupts_all_processes_is_heard_by_this_one_alone():
+    with Crew(jobs=2) as crew:
+        for number in range(4):
+            crew.add(number, 0.0, interruptible)
+        assert not any(heard for _, heard in crew.results())
+    assert interruptible()
 
 
 def test_processes_of_joblib_are_left_alone():

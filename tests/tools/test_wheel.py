@@ -82,6 +82,12 @@ def test_the_wheel_holds_the_package_and_the_examples_and_nothing_else(wheel):
     assert not [name for name in names if "test" in name or name.endswith(".ipynb")]
 
 
+def test_the_wheel_keeps_its_commit(environment):
+    code = "from facegear.support.provenance import made_by; print(made_by()['facegear_commit'])"
+    printed = done(environment / PROGRAMS / "python", "-I", "-c", code).strip()
+    assert printed.removesuffix("+changes") == done("git", "rev-parse", "HEAD", cwd=ROOT).strip()
+
+
 def test_only_what_pyproject_names_is_installed(environment):
     listed = done(
         *UV, "pip", "list", "--quiet", "--format", "freeze", "--python", environment / PROGRAMS / "python"
