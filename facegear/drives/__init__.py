@@ -7,8 +7,8 @@ the keys, `new_drive` asks for what a file needs; `examples` come with the packa
 What holds: `basis`, `verdict`, `critical_thickness`, `report_rows`, `report_arrays`, `disk_response`, `play` of the
 teeth, `damage` of one; `findings` has all that a report shows, `sections` and `page` put it in words, `report_columns`
 and `report_files` write; `sweeps` are maps over any number of a file. `assess` asks all `variants` of a model, each an
-`outcome`, for an `assessment` over `intervals` of speed, in `growth_words` and `disk_response_words`, with the arrays of
-`assessment_table` and `disk_response_table`, which `assessment_files` write, and `assessment_columns` as tables.
+`outcome`, for an `assessment` over `intervals` of speed, in `growth_words` and `disk_response_words`, with arrays
+of `assessment_table` and `disk_response_table`, which `assessment_files` write, and `assessment_columns` as tables.
 The explorer: `studies`, `file_study`, `explore` and `cell` compute what it shows, `explorer`, `motion_explorer` and
 `cell_figure` draw it, `live` serves it.
 `export` writes points, meshes, tables. The command: `command`, after `command_line` has understood what is asked for,
