@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.metadata import version
@@ -617,10 +618,12 @@ def _by_cell(sweep: _Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, 
     periods, left = cells.periods, np.flatnonzero(np.isnan(radii[:, 0]))
     if left.size == len(sweep.values):
         return None
-    if not left.size:
-        return radii, periods, cells.error_estimate(radii)
-    others = replace(sweep, values=tuple(sweep.values[row] for row in left.tolist()))
-    radii[left], periods[left] = _by_row(others, speeds, run)
+    if left.size:
+        others = replace(sweep, values=tuple(sweep.values[row] for row in left.tolist()))
+        radii[left], periods[left] = _by_row(others, speeds, run)
+    else:
+        with suppress(UnsuitableSystemError):  # shorter steps may be too many
+            return radii, periods, cells.error_estimate(radii)
     return radii, periods, _error_estimate(sweep, speeds, radii)
 
 

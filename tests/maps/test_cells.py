@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from facegear.floquet.collocation import UnsuitableSystemError
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import AdaptiveMagnus, growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
@@ -124,6 +125,19 @@ def test_values_that_ask_for_too_many_steps_go_by_rows_and_no_others(monkeypatch
     assert len(asked) == 1
     assert 0 < asked[0] < 6
     check(model, chart, "input_stiffness", 5)
+
+
+def test_steps_that_are_enough_but_not_half_as_long_leave_the_estimate_to_another_method(monkeypatch):
+    def too_many(systems):
+        raise UnsuitableSystemError("coefficients ask for more steps")
+
+    monkeypatch.setattr(module, "_scaled", too_many)
+    model = Mathieu(depth=0.4, damping_ratio=0.02)
+    chart = stability_map(
+        model, np.linspace(1.5, 2.5, 7), "depth", np.linspace(0.1, 0.5, 6), jobs=1, progress=False
+    )
+    assert chart.attrs["error_estimate"] < 1e-9
+    check(model, chart, "depth", 5)
 
 
 def test_what_speed_changes_besides_the_period_is_not_taken_for_nothing():
