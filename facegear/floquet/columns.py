@@ -32,6 +32,8 @@ TOLERANCE = 1e-10
 LOWEST_DEGREE = 8
 # Largest difference of an interpolated entry from that of the cell itself, in units of the tolerance of the series.
 _WITNESSED = 10.0
+# Factor between the largest entries of matrices that may share a series.
+_MOST_APART = 1e3
 
 
 def column_spectral_radii(
@@ -272,8 +274,15 @@ def interpolated_spectral_radii(
 
 def agree(interpolated: FloatArray, own: FloatArray, tolerance: float = TOLERANCE) -> bool:
     """Whether interpolated matrices are those of the cells themselves, to an error that the tolerance allows."""
-    size = max(float(np.abs(own).max()), 1.0)
-    return bool(np.abs(interpolated - own).max() <= _WITNESSED * tolerance * size)
+    size = np.maximum(np.abs(own).max(axis=(-2, -1)), 1.0)
+    apart = np.abs(interpolated - own).max(axis=(-2, -1))
+    return bool((apart <= _WITNESSED * tolerance * size).all())
+
+
+def of_one_size(matrices: FloatArray) -> bool:
+    """Whether no matrix is far larger than another: the error of a series is small beside the largest of them alone."""
+    size = np.abs(matrices).max(axis=(-2, -1))
+    return bool(size.max() <= _MOST_APART * max(float(size.min()), 1.0))
 
 
 def _witnesses(series: ChebyshevSeries, points: FloatArray, radii: FloatArray) -> NDArray[np.intp]:
@@ -288,12 +297,12 @@ def _witnesses(series: ChebyshevSeries, points: FloatArray, radii: FloatArray) -
 
 
 def resolved(evaluate: Evaluate, points: FloatArray, tolerance: float, degree: int) -> ChebyshevSeries | None:
-    """Sample until the tail meets the tolerance, or None if that takes as many evaluations as points."""
+    """Sample until the tail meets the tolerance; None if that takes too many evaluations, or says too little."""
     if not resolvable(points) or degree > points.size - 2:
         return None
     low, high = float(points.min()), float(points.max())
     series = ChebyshevSeries.resolved(evaluate, low, high, degree, points.size - 2, tolerance)
-    return series if series.tail <= tolerance else None
+    return series if series.tail <= tolerance and of_one_size(series.values) else None
 
 
 def resolvable(points: FloatArray) -> bool:

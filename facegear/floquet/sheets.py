@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.floquet.columns import Evaluate, resolvable, resolved
+from facegear.floquet.columns import Evaluate, of_one_size, resolvable, resolved
 from facegear.floquet.multiplier_curves import FrozenMotions
 from facegear.floquet.series import ChebyshevSeries, chebyshev_basis, lobatto_coefficients
 from facegear.support.types import FloatArray
@@ -98,7 +98,8 @@ class Sheet:
             series = [lobatto_coefficients(column) for column in columns]
             columns = [np.pad(part, ((0, most - len(part)), (0, 0), (0, 0))) for part in series]
         along_speed = ChebyshevSeries(low, high, np.stack(columns))
-        return cls(along_speed, ends) if along_speed.tail <= tolerance else None
+        smooth = along_speed.tail <= tolerance and of_one_size(np.abs(along_speed.values).max(axis=1))
+        return cls(along_speed, ends) if smooth else None
 
     def matrices(self, speeds: FloatArray, variable: FloatArray) -> FloatArray:
         """Transition matrices at speeds (m,) [rad/s] and values (V,) of the variable, (m, V, d, d).

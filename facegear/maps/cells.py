@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from facegear.floquet.collocation import UnsuitableSystemError
-from facegear.floquet.columns import LOWEST_DEGREE, LoadSweep, agree, resolved
+from facegear.floquet.columns import LOWEST_DEGREE, LoadSweep, agree, of_one_size, resolved
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model, system_at
 from facegear.floquet.multipliers import FIRST, shift_by_rounding
@@ -116,6 +116,8 @@ class _Chunk:
                 each = zip(loads.mass, loads.damping, loads.stiffness, strict=True)
                 family = Family([first.replace_loads(mass=m, damping=c, stiffness=k) for m, c, k in each])
                 longest = _METHOD.over(family, self.turns[:1])[:, 0]
+                if not of_one_size(longest):
+                    break
                 if ChebyshevSeries(*ends, longest).tail <= SHEET_TOLERANCE:
                     of_points = lobatto_coefficients(np.eye(degree + 1))
                     return family, chebyshev_basis(*ends, swept.variable, degree + 1) @ of_points

@@ -5,7 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from facegear.floquet.columns import column_spectral_radii, family_spectral_radii, interpolated_spectral_radii
+from facegear.floquet.columns import (
+    agree,
+    column_spectral_radii,
+    family_spectral_radii,
+    interpolated_spectral_radii,
+    resolved,
+)
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
@@ -73,3 +79,21 @@ def test_what_is_smooth_to_the_samples_only_is_computed_cell_by_cell():
 
     expected = np.abs(evaluate(points)[:, 0, 0])
     assert np.abs(interpolated_spectral_radii(evaluate, points) - expected).max() < 1e-12
+
+
+def test_matrices_of_very_different_size_share_no_series():
+    points = np.linspace(0.0, 1.0, 60)
+
+    def evaluate(some):
+        return np.exp(some * rate)[:, None, None] * np.eye(2)
+
+    rate = 3.0
+    assert resolved(evaluate, points, 1e-11, 8) is not None
+    rate = 40.0
+    assert resolved(evaluate, points, 1e-11, 8) is None
+
+
+def test_a_small_matrix_is_not_agreed_upon_because_a_large_one_is():
+    own = np.array([1e6, 1.0])[:, None, None] * np.eye(2)
+    assert agree(own * (1.0 + 1e-13), own)
+    assert not agree(own + 1e-6, own)

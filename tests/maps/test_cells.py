@@ -140,6 +140,18 @@ def test_steps_that_are_enough_but_not_half_as_long_leave_the_estimate_to_anothe
     check(model, chart, "depth", 5)
 
 
+@pytest.mark.parametrize(("lowest", "deepest"), [(0.1, 5.0), (0.05, 2.0)])
+def test_cells_beside_others_that_grow_very_much_within_their_period(lowest, deepest):
+    model = Mathieu(depth=0.0, damping_ratio=0.01)
+    speeds, depths = np.linspace(lowest, 4.0, 200), np.linspace(0.0, deepest, 13)
+    chart = stability_map(model, speeds, "depth", depths, jobs=1, progress=False)
+    assert float((chart * 2.0 * np.pi / chart.speed).max()) > 25.0
+    for row in range(0, 13, 4):
+        for column in range(0, 200, 12):
+            alone = growth_rate(replace_parameter(model, "depth", depths[row]).system(speeds[column]))
+            assert float(chart[row, column]) == pytest.approx(alone, abs=1e-9)
+
+
 def test_what_speed_changes_besides_the_period_is_not_taken_for_nothing():
     assert taken(Own()) is not None
     assert taken(Own(with_speed=1e-9)) is None
