@@ -258,12 +258,12 @@ class Family:
         n = self.size
         mass, damping, stiffness = matrices
         inverse = np.linalg.inv(mass)
-        scale, back = self.scale[n:, n:], self.inverse_scale[n:, n:]
+        scale, back = (np.asarray(x[n:, n:], dtype=float) for x in (self.scale, self.inverse_scale))
         left = -self.periods[:, None, None, None] * (scale @ inverse)
-        ratio = self.scale[0, 0] / self.scale[n, n]
+        ratio = float(self.scale[0, 0] / self.scale[n, n])
         state = np.zeros((len(self.systems), instants, 2 * n, 2 * n))
         state[..., :n, n:] = (self.periods * ratio)[:, None, None, None] * np.eye(n)
-        state[..., n:, :n] = _between(left, stiffness, back / float(ratio))
+        state[..., n:, :n] = _between(left, stiffness, back / ratio)
         state[..., n:, n:] = _between(left, damping, back)
         return state
 
