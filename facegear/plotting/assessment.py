@@ -93,7 +93,8 @@ def dynamic_load(response: xr.Dataset, static: float) -> Figure:
     ax.plot(speed, np.asarray(lowest) / 1e3, color=ORANGE, marker=".", label="smallest of a pair")
     _peaks(ax, response, 0.0, 1e3)
     ax.axhline(static / 1e3, color=INK, linestyle="--", linewidth=1.0, label="all pairs together, at rest")
-    ax.set_yscale("symlog", linthresh=2.0 * static / 1e3)
+    # Linear up to a power of ten, or labels would meet at zero.
+    ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(2.0 * static / 1e3)), linscale=2.0)
     ax.set(xlabel=_SPEED, ylabel="force between teeth [kN]")
     figure.legend(loc="outside lower center", ncols=2)
     return figure
