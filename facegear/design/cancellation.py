@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from facegear.floquet.collocation import gauss_rule
+from facegear.floquet.gauss_panels import gauss_rule
 from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev

@@ -2,7 +2,8 @@
 
 `periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
 `multipliers` the transition matrix by the methods of `collocation`, `stepping`, `radau` and `taylor`, `columns`,
-`multiplier_curves` and `sheets` the same along a parameter, along speed and along both; `eigenvalues` are those of
+`multiplier_curves` and `sheets` the same along a parameter, along speed and along both. Collocation takes the modes of
+`free_modes`, the equations of `contact_forces` and the panels of `gauss_panels`; `eigenvalues` are those of
 many matrices, in `lockstep` where Numba is installed (`compiled`), as `lockstep_exponentials` and `lockstep_taylor`
 have steps of small systems; `modes` has natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu`
 are the approximations, `hill` the harmonic balance of motions. `response` has the steady motion that forces cause,
