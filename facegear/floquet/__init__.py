@@ -8,8 +8,9 @@ many matrices, in `lockstep` where Numba is installed (`compiled`), as `lockstep
 have steps of small systems; `modes` has natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu`
 are the approximations, `hill` the harmonic balance of motions. `response` has the steady motion that forces cause,
 along the panels of `motion`. Systems whose loads act in contact only are those of `clearance`: `orbits` has their
-periodic motions, on the panels of `contact_panels`, `continuation` the families of these along a parameter,
-`transients` where other motions end, compiled in `lockstep_transients` where Numba is installed.
+periodic motions, on the panels of `contact_panels`, `continuation` follows the `branches` of these along a parameter,
+by steps of `arc_length`, `transients` where other motions end, compiled in `lockstep_transients` where Numba is
+installed.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*
