@@ -3,6 +3,8 @@ from .drives.assess import assess as assess
 from .drives.drive_file import read_drive_file as read_drive_file
 from .drives.drive_text import write_drive_file as write_drive_file
 from .floquet.hsu import resonance_bands as resonance_bands
+from .floquet.loads import ContactLoad as ContactLoad
+from .floquet.loads import StateJump as StateJump
 from .floquet.models import Excited as Excited
 from .floquet.models import WithoutRigidMotion as WithoutRigidMotion
 from .floquet.models import replace_parameter as replace_parameter
@@ -10,9 +12,7 @@ from .floquet.multipliers import error_estimate as error_estimate
 from .floquet.multipliers import growth_rate as growth_rate
 from .floquet.multipliers import multipliers as multipliers
 from .floquet.multipliers import transition_matrix as transition_matrix
-from .floquet.periodic import ContactLoad as ContactLoad
 from .floquet.periodic import PeriodicSystem as PeriodicSystem
-from .floquet.periodic import StateJump as StateJump
 from .floquet.piecewise import PiecewiseChebyshev as PiecewiseChebyshev
 from .floquet.response import steady_response as steady_response
 from .geometry.drive import Drive as Drive

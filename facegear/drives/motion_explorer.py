@@ -14,12 +14,11 @@ from matplotlib.figure import Figure
 
 from facegear.drives.play import Motion, motion_arrays, motion_from_rest
 from facegear.floquet.models import replace_parameter, value_of
-from facegear.floquet.periodic import named
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import ProportionalGearbox
 from facegear.plotting.motions import motions
 from facegear.plotting.style import FAINT, INK, VERMILION, panels, styled
-from facegear.support.parameters import finite, rad_per_s
+from facegear.support.parameters import finite, named, rad_per_s
 
 _POINTS = 401
 _REFUSALS = (TypeError, ValueError, ArithmeticError)

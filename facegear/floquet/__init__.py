@@ -1,6 +1,6 @@
 """The engine: stability of linear systems with periodic coefficients (chapter 2). It knows nothing of gears.
 
-`periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
+`periodic` has the systems, `loads` their loads of rank one, `piecewise` and `series` the series they are made of;
 `multipliers` the transition matrix by the methods of `collocation`, `stepping`, `radau` and `taylor`, `columns`,
 `multiplier_curves` and `sheets` the same along a parameter, along speed and along both. Collocation takes the modes of
 `free_modes`, the equations of `contact_forces` and the panels of `gauss_panels`; `eigenvalues` are those of

@@ -17,8 +17,7 @@ from facegear.floquet.branches import Kind
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.contact_panels import Motion, Panels, linearised
 from facegear.floquet.orbits import Orbit, Step, require_clearances
-from facegear.floquet.periodic import named
-from facegear.support.parameters import finite, integer_at_least, keep, positive, within
+from facegear.support.parameters import finite, integer_at_least, keep, named, positive, within
 from facegear.support.types import FloatArray
 
 Systems = Callable[[float], ClearanceSystem]

@@ -21,8 +21,9 @@ from facegear.floquet.free_modes import HeldSystems
 from facegear.floquet.free_modes import UnsuitableSystemError as UnsuitableSystemError
 from facegear.floquet.gauss_panels import gauss_rule, last_coefficients, panel_edges
 from facegear.floquet.gauss_panels import within_reach as within_reach
+from facegear.floquet.loads import weighted_shape
 from facegear.floquet.motion import MotionPanels, known_errors
-from facegear.floquet.periodic import LoadColumn, PeriodicSystem, weighted_shape
+from facegear.floquet.periodic import LoadColumn, PeriodicSystem
 from facegear.floquet.piecewise import merge_breakpoints
 from facegear.support.types import FloatArray
 

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from facegear.floquet.free_modes import FreeModes
 from facegear.floquet.gauss_panels import gauss_rule
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.support.types import ComplexArray, FloatArray
 

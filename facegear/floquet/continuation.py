@@ -29,8 +29,7 @@ from facegear.floquet.arc_length import (
 )
 from facegear.floquet.branches import Branch, Kind, Special
 from facegear.floquet.orbits import Orbit, Step, periodic_orbit
-from facegear.floquet.periodic import named
-from facegear.support.parameters import finite, within
+from facegear.support.parameters import finite, named, within
 from facegear.support.types import FloatArray
 
 # Arc to which a special point is found; arcs below which a family is stuck.
@@ -91,7 +90,8 @@ def followed(
 
     >>> from facegear.floquet.clearance import ClearanceSystem
     >>> from facegear.floquet.orbits import periodic_orbit
-    >>> from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+    >>> from facegear.floquet.loads import ContactLoad
+    >>> from facegear.floquet.periodic import PeriodicSystem
     >>> from facegear.floquet.piecewise import PiecewiseChebyshev
     >>> one = PiecewiseChebyshev.constant([1.0])
     >>> force = PiecewiseChebyshev.fit(lambda x, piece: 0.1 + 0.05 * np.cos(2.0 * np.pi * x), [0.0])

@@ -12,8 +12,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.modes import NaturalMotions
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.support.types import ComplexArray, FloatArray
 

@@ -17,8 +17,9 @@ from typing import Any, Protocol, TypeVar, get_args, get_type_hints
 
 from numpy.typing import ArrayLike
 
-from facegear.floquet.periodic import PeriodicSystem, named, require_system, without_rigid_motion
+from facegear.floquet.periodic import PeriodicSystem, require_system, without_rigid_motion
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.support.parameters import named
 from facegear.support.types import FloatArray
 
 
@@ -182,7 +183,7 @@ class Excited:
         Raises
         ------
         TypeError, ValueError
-            If the model's loads do not take them, see :class:`facegear.floquet.periodic.ContactLoad`, or there are no
+            If the model's loads do not take them, see :class:`facegear.floquet.loads.ContactLoad`, or there are no
             loads.
         """
         system = system_at(self.model, speed)

@@ -25,13 +25,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.floquet.periodic import PeriodicSystem, named, require_system
+from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.support.parameters import (
     STEEL,
     Material,
     integer_at_least,
     integer_within,
     keep,
+    named,
     nonnegative,
     positive,
 )

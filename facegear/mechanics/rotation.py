@@ -21,7 +21,8 @@ from numpy.typing import ArrayLike
 from facegear.floquet.collocation import chain
 from facegear.floquet.free_modes import FreeModes
 from facegear.floquet.gauss_panels import gauss_rule, panel_edges
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import merge_breakpoints
 from facegear.geometry.phases import phase_split
 from facegear.mechanics.disk import disk_modes
