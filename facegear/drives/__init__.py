@@ -9,8 +9,8 @@ teeth, `damage` of one; `findings` has all that a report shows, `sections` and `
 and `report_files` write; `sweeps` are maps over any number of a file. `assess` asks all `variants` of a model, each an
 `outcome`, for an `assessment` over `intervals` of speed, in `growth_words` and `disk_response_words`, with arrays
 of `assessment_table` and `disk_response_table`, which `assessment_files` write, and `assessment_columns` as tables.
-The explorer: `studies`, `file_study`, `explore` and `cell` compute what it shows, `explorer`, `motion_explorer` and
-`cell_figure` draw it, `live` serves it.
+The explorer: `studies`, `file_study`, `explore` and `cell` compute what it shows, `explorer` and `motion_explorer` draw
+it with a `map_figure`, a `cell_figure` and `widgets`, `live` serves it.
 `export` writes points, meshes, tables. The command: `command`, after `command_line` has understood what is asked for,
 runs one of `commands`.
 Public: `read_drive_file`, `write_drive_file`.
