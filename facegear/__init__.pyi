@@ -36,14 +36,14 @@ from .mechanics.paths import line_contact as line_contact
 from .mechanics.paths import loaded_contact as loaded_contact
 from .mechanics.paths import point_contact as point_contact
 from .mechanics.plate import Body as Body
+from .mechanics.properties import STEEL as STEEL
+from .mechanics.properties import MeshLoad as MeshLoad
 from .mechanics.sharing import shared_load as shared_load
 from .mechanics.tooth_stiffness import mesh_stiffness as mesh_stiffness
 from .mechanics.torsional import Gearbox as Gearbox
 from .mechanics.torsional import Torsional as Torsional
 from .mechanics.transverse import Transverse as Transverse
 from .mechanics.two_gears import TwoGears as TwoGears
-from .support.parameters import STEEL as STEEL
-from .support.parameters import MeshLoad as MeshLoad
 from .support.parameters import rad_per_s as rad_per_s
 from .support.parameters import rpm as rpm
 from .support.parameters import watt as watt

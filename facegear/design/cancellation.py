@@ -36,15 +36,10 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_modes
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.rotation import DiskWaves
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import (
-    MeshLoad,
-    finite_array,
-    integer_at_least,
-    positive,
-    within,
-)
+from facegear.support.parameters import finite_array, integer_at_least, positive, within
 from facegear.support.types import ComplexArray
 
 Kind = Literal["sum", "difference"]

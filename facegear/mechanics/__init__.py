@@ -8,7 +8,7 @@ its teeth (`inplane`, `edge_stiffness`, `pressed_points`, `spreads`, `pressed_st
 springs of their teeth (`mesh_oscillator`, `two_gears`; 8), the stiffness of teeth (`tooth_stiffness`; 7) and the
 gearbox in torsion (`torsional`; 7), with play between its teeth (`backlash`; 8), with a damaged one (`tooth_damage`; 8)
 and with shafts that have mass (`rods`, `exact_rods`, `heavy_shafts`; 8), the classical equations (`classical`,
-`classical_pairs`; 2), the dissertation's own drives (`cases`, `gearboxes`).
-Public: `Body`, `Contact`, `DrivingForce`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`,
+`classical_pairs`; 2), material and bearings (`properties`), the dissertation's own drives (`cases`, `gearboxes`).
+Public: `STEEL`, `MeshLoad`, `Body`, `Contact`, `DrivingForce`, `EdgeLoadStress`, `Transverse`, `Gearbox`, `Torsional`,
 `MeshOscillator`, `TwoGears`.
 """

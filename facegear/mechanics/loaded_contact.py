@@ -29,9 +29,10 @@ from facegear.geometry.misalignment import ALIGNED, Misalignment
 from facegear.geometry.timed_pairs import merged
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance
 from facegear.mechanics.plate_compliance import PlateCompliance
+from facegear.mechanics.properties import STEEL, Material
 from facegear.mechanics.slices import Slices
 from facegear.mechanics.tooth_stiffness import checked_factor, mesh_stiffness
-from facegear.support.parameters import STEEL, Material, finite, finite_array, keep, one_of
+from facegear.support.parameters import finite, finite_array, keep, one_of
 from facegear.support.roots import crossing
 from facegear.support.types import FloatArray
 

@@ -27,8 +27,9 @@ from facegear.mechanics.loaded_contact import (
     fit_tolerances,
     require_kinds,
 )
+from facegear.mechanics.properties import STEEL, Material
 from facegear.mechanics.tooth_stiffness import checked_factor
-from facegear.support.parameters import STEEL, Material, keep, one_of
+from facegear.support.parameters import keep, one_of
 from facegear.support.types import FloatArray
 
 

@@ -29,17 +29,9 @@ from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import SKEW_LINE, Contact
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.tooth_stiffness import tooth_stiffness
-from facegear.support.parameters import (
-    STEEL,
-    designed,
-    finite_array,
-    keep,
-    nonnegative,
-    one_of,
-    positive,
-    within,
-)
+from facegear.support.parameters import designed, finite_array, keep, nonnegative, one_of, positive, within
 from facegear.support.types import FloatArray
 
 Arm = Literal["printed", "conjugate"]

@@ -40,8 +40,9 @@ from facegear.mechanics.disk import (
 )
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.radial_modes import RadialModes
-from facegear.support.parameters import MeshLoad, designed, finite_array, keep, positive, within
+from facegear.support.parameters import designed, finite_array, keep, positive, within
 from facegear.support.types import FloatArray
 
 MOST_PERIODS = 1e3

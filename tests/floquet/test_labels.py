@@ -12,8 +12,9 @@ from facegear.geometry.drive import Drive
 from facegear.maps.tracing import tongues
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 TURN = 2.0 * np.pi
 

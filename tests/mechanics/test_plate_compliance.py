@@ -15,8 +15,8 @@ from facegear.mechanics.elastic_teeth import GearTooth, PinionTooth
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.paths import loaded_contact
 from facegear.mechanics.plate_compliance import PlateCompliance
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.slices import Slices
-from facegear.support.parameters import STEEL
 
 DRIVE = Drive(26, 130, 3.175e-3, shaper_teeth=27)
 SLICES = Slices(DRIVE)

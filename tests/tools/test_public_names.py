@@ -52,7 +52,7 @@ def test_a_copied_example_brings_all_its_names_along(name):
 def test_name_is_followed_from_its_module_on():
     assert found("facegear.floquet.multipliers.with_method")[-1] is not None
     assert found("facegear.floquet.periodic.PeriodicSystem.fourier")[-1] is fg.PeriodicSystem.fourier
-    assert found("facegear.support.parameters.MeshLoad.stiffness")  # a field without default
+    assert found("facegear.mechanics.properties.MeshLoad.stiffness")  # a field without default
     assert found("facegear.floquet.multipliers.no_such_method") == []
     assert found("no_such_package.name") == []
 

@@ -12,8 +12,9 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.maps.lobes import CriticalThickness, Lobe
 from facegear.mechanics.disk import disk_modes, shape_vector
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 DRIVE = constant_diametral_pitch(25)
 MODEL = Transverse(Body(DRIVE, 0.04), MeshLoad(stiffness=0.8, damping=1e-5, mass=1.0))

@@ -19,11 +19,11 @@ from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import Material, MeshLoad
 from facegear.mechanics.sharing import shared_load
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import Material, MeshLoad
 from tests.drives.studies.models import THREE
 
 OWN_DRIVE = Drive(30, 120, 3e-3, pressure_angle=math.radians(20.0), shaft_angle=math.radians(85.0))
