@@ -103,7 +103,7 @@ class DriveFile:
     @property
     def not_buildable(self) -> tuple[str, ...]:
         """What of the shafts cannot be built, one sentence each; empty without lengths of shafts."""
-        return getattr(self.torsional, "not_buildable", ())
+        return () if self.torsional is None else self.torsional.not_buildable
 
 
 def read_drive_file(path: str | Path) -> DriveFile:

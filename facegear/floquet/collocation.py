@@ -19,12 +19,13 @@ from facegear.floquet.contact_forces import ForcePanels, Nodes, at_nodes, in_pla
 from facegear.floquet.contact_forces import mobilities as mobilities
 from facegear.floquet.free_modes import HeldSystems
 from facegear.floquet.free_modes import UnsuitableSystemError as UnsuitableSystemError
-from facegear.floquet.gauss_panels import gauss_rule, last_coefficients, panel_edges
+from facegear.floquet.gauss_panels import gauss_rule, panel_edges
 from facegear.floquet.gauss_panels import within_reach as within_reach
 from facegear.floquet.loads import weighted_shape
 from facegear.floquet.motion import MotionPanels, known_errors
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
 from facegear.floquet.piecewise import merge_breakpoints
+from facegear.support.quadrature import legendre_from_values
 from facegear.support.types import FloatArray
 
 #: Gauss nodes a panel.
@@ -102,7 +103,7 @@ class FreeMotion:
         The state at the end of a panel converges twice as fast as the force along it: if the last Legendre
         coefficients of the force are ε of its size, ε² is left of its effect.
         """
-        tail = last_coefficients(nodes)
+        tail = legendre_from_values(nodes)[-2:]
         parameters = self._load_parameters(column)
         force = self.panels.forces(parameters)
         for _ in range(_MOST_HALVINGS):

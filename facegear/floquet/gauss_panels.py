@@ -10,6 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from facegear.support.quadrature import gauss_legendre, legendre_from_values
 from facegear.support.types import FloatArray
 
 # Parts of a period beyond which a motion is too fast to follow.
@@ -19,23 +20,14 @@ _MOST_PARTS = 2**17
 @lru_cache(maxsize=16)
 def gauss_rule(nodes: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Gauss-Legendre nodes and weights on [0, 1], and a_ij = ∫_0^{x_i} l_j, shape (nodes, nodes)."""
-    x, weights = np.polynomial.legendre.leggauss(nodes)
+    x, weights = gauss_legendre(nodes)
     degrees = np.arange(nodes)
     legendre = np.polynomial.legendre.legvander(x, nodes)
-    # l_j = Σ_d (2d+1)/2 w_j P_d(x_j) P_d and ∫_{-1}^x P_d = (P_{d+1} − P_{d−1})/(2d+1).
-    coefficients = (degrees + 0.5)[:, None] * legendre[:, :nodes].T * weights
+    # ∫_{-1}^x P_d = (P_{d+1} − P_{d−1})/(2d+1)
     integrals = np.empty((nodes, nodes))
     integrals[:, 0] = x + 1.0
     integrals[:, 1:] = (legendre[:, 2:] - legendre[:, : nodes - 1]) / (2 * degrees[1:] + 1)
-    return (x + 1.0) / 2.0, weights / 2.0, integrals @ coefficients / 2.0
-
-
-@lru_cache(maxsize=16)
-def last_coefficients(nodes: int) -> FloatArray:
-    """Return the matrix from values at Gauss nodes to the last two Legendre coefficients, shape (2, nodes)."""
-    x, weights, _ = gauss_rule(nodes)
-    last = np.polynomial.legendre.legvander(2.0 * x - 1.0, nodes - 1)[:, -2:]
-    return np.asarray((last * weights[:, None] * (2.0 * np.arange(nodes - 2, nodes) + 1.0)).T, dtype=float)
+    return (x + 1.0) / 2.0, weights / 2.0, integrals @ legendre_from_values(nodes) / 2.0
 
 
 def within_reach(parts: float) -> int:

@@ -264,6 +264,11 @@ class Torsional:
         return tuple(Coordinate(name, "rad", name) for name in ("pinion", "face gear", "load"))
 
     @property
+    def not_buildable(self) -> tuple[str, ...]:
+        """What cannot be built: nothing, as shafts without mass have no length or diameter."""
+        return ()
+
+    @property
     def contact_ratio(self) -> float:
         """Mesh periods that a tooth pair stays in mesh: that of the contact if given, else Tregold's."""
         return self.contact.ratio(self.drive)
