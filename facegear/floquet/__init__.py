@@ -1,7 +1,7 @@
 """The engine: stability of linear systems with periodic coefficients (chapter 2). It knows nothing of gears.
 
 Systems: `periodic` has the equations, `loads` what varies in them, `piecewise` and `series` the series they are made
-of, `models` what makes a system at each speed.
+of, `models` what makes a system at each speed, `modified_models` such as are made of others.
 
 Multipliers: `multipliers` has the transition matrix by one of four methods. `collocation` takes the modes of
 `free_modes`, the panels of `gauss_panels` and the equations of `contact_forces`; the others are `stepping`, `radau` and
@@ -10,7 +10,7 @@ Multipliers: `multipliers` has the transition matrix by one of four methods. `co
 installed (`compiled`), as `lockstep_exponentials` and `lockstep_taylor` have steps of small systems.
 
 Modes and approximations: `modes` has natural motions, `labels` names what is unstable; `modal` is the standard form for
-`averaging` and `hsu`, and `hill` the harmonic balance.
+`averaging` and `hsu`, along speed `band_speeds`, and `hill` has the harmonic balance.
 
 Motions: `response` has the steady one that forces cause, along the panels of `motion`. Systems whose loads act in
 contact only are those of `clearance`: `orbits` has their periodic motions, on the panels of `contact_panels`,

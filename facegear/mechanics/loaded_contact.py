@@ -237,8 +237,8 @@ class LoadedContact:
     def excitation(self) -> PiecewiseChebyshev:
         """What the loaded transmission error departs from its mean over a mesh period, against t/T0 [m].
 
-        A `transmission_error` of :class:`facegear.floquet.models.Excited`: the springs of the pairs would follow it, if
-        nothing had inertia, without any change of the force.
+        A `transmission_error` of :class:`facegear.floquet.modified_models.Excited`: the springs of the pairs would
+        follow it, if nothing had inertia, without any change of the force.
         """
         error = self.cycle.series.transformed(np.array([[1.0, 0.0]]))
         coefficients = error.coefficients.copy()

@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from facegear.floquet.hsu import band_speeds, resonance_bands
+from facegear.floquet.band_speeds import band_speeds
+from facegear.floquet.hsu import resonance_bands
 from facegear.floquet.labels import Combination, combination, moving_parts
 from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem

@@ -61,8 +61,8 @@ def test_short_name_is_looked_for_in_the_class_and_in_the_module_of_its_docstrin
     near = candidates("jumps", "facegear.PeriodicSystem.state_jumps")
     assert near[:2] == ["facegear.floquet.periodic.PeriodicSystem.jumps", "facegear.floquet.periodic.jumps"]
     assert (
-        candidates("band_speeds", "facegear.floquet.hsu.resonance_bands")[0]
-        == "facegear.floquet.hsu.band_speeds"
+        candidates("block_bands", "facegear.floquet.hsu.resonance_bands")[0]
+        == "facegear.floquet.hsu.block_bands"
     )
 
 

@@ -11,7 +11,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.meshing import describe
-from facegear.floquet.models import Excited, replace_parameter
+from facegear.floquet.models import replace_parameter
+from facegear.floquet.modified_models import Excited
 from facegear.geometry.drive import Drive
 from facegear.geometry.misalignment import Misalignment
 from facegear.geometry.point_contact import UnloadedContact
