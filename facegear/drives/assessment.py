@@ -18,8 +18,8 @@ from facegear.drives.growth_words import corner, mechanism, told, within_toleran
 from facegear.drives.intervals import Intervals, gaps, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
-from facegear.drives.tolerances import WorstCase
 from facegear.drives.torsion_response import in_words
+from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
 from facegear.support.parameters import rpm
 

@@ -59,7 +59,7 @@ def frequency_response(
     Parameters
     ----------
     model : Model
-        With forces or transmission errors, such as :class:`facegear.floquet.models.Excited`.
+        With forces or transmission errors, such as :class:`facegear.floquet.modified_models.Excited`.
     speeds : array_like, shape (S,)
         Speeds [rad/s], greater than 0, ascending.
     together : sequence of sequence of int, optional

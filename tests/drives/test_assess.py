@@ -16,9 +16,10 @@ from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import told
 from facegear.drives.intervals import gaps
 from facegear.drives.outcome import Outcome
-from facegear.drives.tolerances import Tolerances, WorstCase, not_known
+from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
+from facegear.drives.worst_case import WorstCase, not_known
 from facegear.floquet.labels import Combination
 from facegear.floquet.response import steady_response
 from facegear.maps.tracing import Tongue, tongues

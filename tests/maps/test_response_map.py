@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from facegear.drives.studies.gearbox import gearbox_study
-from facegear.floquet.models import Coordinate, Excited, WithoutRigidMotion, replace_parameter
+from facegear.floquet.models import Coordinate, replace_parameter
+from facegear.floquet.modified_models import Excited, WithoutRigidMotion
 from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
