@@ -13,11 +13,10 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from facegear.floquet.multipliers import growth_rate
-from facegear.floquet.periodic import named
 from facegear.floquet.response import steady_response
 from facegear.mechanics.tooth_damage import DamagedTooth
 from facegear.support.labelled import variable
-from facegear.support.parameters import finite_array, rad_per_s
+from facegear.support.parameters import finite_array, named, rad_per_s
 from facegear.support.types import FloatArray
 
 # Number of the face gear among the coordinates.

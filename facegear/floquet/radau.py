@@ -22,7 +22,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from facegear.floquet.collocation import within_reach
+from facegear.floquet.gauss_panels import within_reach
 from facegear.floquet.motion import MotionPanels, known_forces
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import SAME_INSTANT, merge_breakpoints

@@ -22,10 +22,10 @@ from numpy.typing import ArrayLike
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.models import Coordinate
 from facegear.floquet.orbits import Orbit
-from facegear.floquet.periodic import PeriodicSystem, named
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics.torsional import Torsional
-from facegear.support.parameters import designed, finite, keep, one_of, within
+from facegear.support.parameters import designed, finite, keep, named, one_of, within
 from facegear.support.types import FloatArray
 
 BackFlank = Literal["reversed", "printed"]

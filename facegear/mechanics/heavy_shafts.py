@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import undamped_frequencies
-from facegear.floquet.periodic import PeriodicSystem, named
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.mechanics.exact_rods import exact_frequencies
+from facegear.mechanics.properties import STEEL, Material
 from facegear.mechanics.rods import (
     MOST_MODES,
     Rod,
@@ -22,7 +23,7 @@ from facegear.mechanics.rods import (
     with_mass,
 )
 from facegear.mechanics.torsional import InSi, Torsional, natural_speed
-from facegear.support.parameters import STEEL, Material, designed, integer_within, keep, within
+from facegear.support.parameters import designed, integer_within, keep, named, within
 from facegear.support.types import FloatArray
 
 # Lengths of shafts with mass [m]: thin disks, and as long as an airframe.

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from facegear.geometry.drive import Drive
+from facegear.mechanics.properties import STEEL, Material
 from facegear.mechanics.radial_modes import (
     BORE_RATIO_RANGE,
     MAX_NODAL_CIRCLES,
@@ -16,14 +17,7 @@ from facegear.mechanics.radial_modes import (
     RadialModes,
     radial_modes,
 )
-from facegear.support.parameters import (
-    STEEL,
-    Material,
-    designed,
-    integer_within,
-    keep,
-    within,
-)
+from facegear.support.parameters import designed, integer_within, keep, within
 from facegear.support.types import FloatArray
 
 # Kirchhoff's theory leaves out shear, which a thicker disk feels in its higher modes.

@@ -25,16 +25,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from facegear.floquet.periodic import PeriodicSystem, named, require_system
-from facegear.support.parameters import (
-    STEEL,
-    Material,
-    integer_at_least,
-    integer_within,
-    keep,
-    nonnegative,
-    positive,
-)
+from facegear.floquet.periodic import PeriodicSystem, require_system
+from facegear.mechanics.properties import STEEL, Material
+from facegear.support.parameters import integer_at_least, integer_within, keep, named, nonnegative, positive
 from facegear.support.types import FloatArray
 
 MOST_MODES = 40

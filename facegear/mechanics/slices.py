@@ -22,7 +22,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.series import ChebyshevSeries
-from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive
 from facegear.geometry.misalignment import ALIGNED, Misalignment
 from facegear.geometry.point_contact import UnloadedContact
@@ -79,10 +78,6 @@ class Slices:
         """Where the flanks touch without load."""
         return UnloadedContact(self.drive, self.misalignment)
 
-    @property
-    def _region(self) -> ContactRegion:
-        return self.drive.contact_region
-
     @cached_property
     def _range(self) -> tuple[float, float]:
         """Local pressure angles of the face, and a little more [rad]."""
@@ -135,7 +130,9 @@ class Slices:
     def position(self) -> Chebyshev:
         """Coordinate u along the shaper's axis of the slice s [m], see :attr:`UnloadedContact.face`."""
         low, high = self.pressure_angle.domain.tolist()
-        return _polynomial(_resolved(lambda s: self._region.position(self.pressure_angle(s)), low, high))
+        return _polynomial(
+            _resolved(lambda s: self.drive.contact_region.position(self.pressure_angle(s)), low, high)
+        )
 
     def distance_and_area(self, s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Distance of slices from the unloaded contact [m], and ∫ g du as far as there [m²]."""
@@ -167,7 +164,7 @@ class Slices:
         Below: involutes of shaper and pinion begin, tooth top of the gear, inner edge or what the shaper leaves of
         it; above: tips of shaper and pinion, outer edge.
         """
-        shaper, region, contact = self.drive.generating, self._region, self.contact
+        shaper, region, contact = self.drive.generating, self.drive.contact_region, self.contact
         lines = np.asarray(c, dtype=float)
         least, most = (np.full(lines.shape, end) for end in self._range)
 
@@ -257,7 +254,7 @@ class Slices:
         cut = (labels == _CUT) & (side == 0)
         if np.any(cut):
             q = bounds[_CUT][cut]
-            labels[cut] += self._region.shaper.cut_by(q, self.roll(q, lines[cut]))[0]
+            labels[cut] += self.drive.contact_region.shaper.cut_by(q, self.roll(q, lines[cut]))[0]
         return np.asarray(labels)
 
     def _line(self, age: FloatArray) -> FloatArray:
@@ -268,7 +265,7 @@ class Slices:
     def _ends(self) -> PiecewiseChebyshev:
         """Both ends of a line against its age over `_whole`, as s [√m]; beyond the last line those of the last."""
         edges = _apart(np.array([0.0, *self.kinks, self.sweep]) / self._whole)
-        tolerances = np.full(edges.shape, 1e-11 if self._region.is_cut else 1e-12)
+        tolerances = np.full(edges.shape, 1e-11 if self.drive.contact_region.is_cut else 1e-12)
         if self.few_teeth:
             # An end comes down to a base circle with the square root of time: pieces shrink towards such kinks.
             edges = np.unique([*edges, *_graded(edges)])
@@ -329,7 +326,7 @@ class Slices:
 
     def place(self, s: FloatArray, age: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Where slices are in mesh: radius r [m] and angle θ about the gear's axis [rad], from the pinion's."""
-        x, y, _ = np.moveaxis(self._region.point(*self.generated(s, age)), -1, 0)
+        x, y, _ = np.moveaxis(self.drive.contact_region.point(*self.generated(s, age)), -1, 0)
         return np.hypot(x, y), np.arctan2(x, -y)
 
 

@@ -17,6 +17,7 @@ from facegear.geometry.proportions import DEDENDUM
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pressed_points import PressedPoints, Spread, require_spread
 from facegear.support.parameters import keep, nonnegative, within
+from facegear.support.quadrature import gauss_legendre
 from facegear.support.types import FloatArray
 
 # Gauss nodes along the face, across a root and in each smooth piece of the mesh period: more change nothing.
@@ -94,12 +95,12 @@ class FaceStrip(Spread):
 
 def _strip(drive: Drive, root_thickness: float) -> PressedPoints:
     """Face of one tooth and its root, pressed equally hard everywhere."""
-    along, part = np.polynomial.legendre.leggauss(_ALONG)
+    along, part = gauss_legendre(_ALONG)
     inner = drive.inner_radius / drive.outer_radius
     radius, share = (1.0 + inner) / 2 + (1.0 - inner) / 2 * along, part / 2
     if root_thickness == 0.0:
         return PressedPoints(radius, np.zeros(_ALONG), share)
-    across, weight = np.polynomial.legendre.leggauss(_ACROSS)
+    across, weight = gauss_legendre(_ACROSS)
     half = root_thickness / (2 * drive.outer_radius)
     angle = half * across / radius[:, np.newaxis]
     return PressedPoints(np.repeat(radius, _ACROSS), angle.ravel(), np.outer(share, weight / 2).ravel())
@@ -191,7 +192,7 @@ class ContactPoints(Spread):
     def points(self, drive: Drive) -> PressedPoints:
         """Contact points at Gauss nodes in each smooth piece of the mesh period."""
         self.contact.require(drive)
-        nodes, weights = np.polynomial.legendre.leggauss(_IN_PIECE)
+        nodes, weights = gauss_legendre(_IN_PIECE)
         breakpoints = self.contact.places(drive)[0].position.breakpoints
         length = np.diff(np.append(breakpoints, 1.0))[:, np.newaxis]
         pieces = zip(

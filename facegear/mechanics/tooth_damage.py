@@ -16,12 +16,13 @@ from typing import Literal
 
 import numpy as np
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
 from facegear.floquet.multipliers import Method, transition_matrices
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, named
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 from facegear.mechanics.torsional import Torsional
-from facegear.support.parameters import finite, integer_within, keep, nonnegative, one_of
+from facegear.support.parameters import finite, integer_within, keep, named, nonnegative, one_of
 from facegear.support.types import FloatArray
 
 Wheel = Literal["face gear", "pinion"]

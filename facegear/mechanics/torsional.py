@@ -21,24 +21,17 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import undamped_frequencies
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import SKEW_LINE, Contact
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.tooth_stiffness import tooth_stiffness
-from facegear.support.parameters import (
-    STEEL,
-    designed,
-    finite_array,
-    keep,
-    nonnegative,
-    one_of,
-    positive,
-    within,
-)
+from facegear.support.parameters import designed, finite_array, keep, nonnegative, one_of, positive, within
 from facegear.support.types import FloatArray
 
 Arm = Literal["printed", "conjugate"]
@@ -269,6 +262,11 @@ class Torsional:
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Elastic deviation angles χ1, χ2, χo (7-9)."""
         return tuple(Coordinate(name, "rad", name) for name in ("pinion", "face gear", "load"))
+
+    @property
+    def not_buildable(self) -> tuple[str, ...]:
+        """What cannot be built: nothing, as shafts without mass have no length or diameter."""
+        return ()
 
     @property
     def contact_ratio(self) -> float:

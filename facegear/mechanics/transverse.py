@@ -21,8 +21,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.linalg import block_diag
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import phase_split
@@ -39,8 +40,9 @@ from facegear.mechanics.disk import (
 )
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.radial_modes import RadialModes
-from facegear.support.parameters import MeshLoad, designed, finite_array, keep, positive, within
+from facegear.support.parameters import designed, finite_array, keep, positive, within
 from facegear.support.types import FloatArray
 
 MOST_PERIODS = 1e3

@@ -23,8 +23,9 @@ from typing import Literal, NamedTuple, cast
 import numpy as np
 from scipy.linalg import block_diag
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period

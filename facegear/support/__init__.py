@@ -4,5 +4,5 @@ Checked inputs and units at the edges (`parameters`), types of arrays (`types`),
 integrals (`quadrature`), threads of BLAS (`threads`), labelled arrays and their files (`labelled`), CSV (`tables`),
 files that appear whole (`files`), the part of YAML that people write by hand (`plain_yaml`), which version and commit
 made a file (`provenance`).
-Public: `STEEL`, `MeshLoad`, `rad_per_s`, `rpm`, `watt`.
+Public: `rad_per_s`, `rpm`, `watt`.
 """

@@ -28,8 +28,9 @@ from facegear.mechanics.disk import (
     shape_vector,
 )
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse, contact_shape, nominal_pinion_mass, rotated
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 from facegear.symbolic import galerkin
 from tests.independent.complex_galerkin import ComplexDisk, Pinion
 from tests.independent.complex_galerkin import multipliers as complex_multipliers

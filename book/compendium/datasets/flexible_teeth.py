@@ -12,8 +12,9 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.transverse import tongue_table
-from facegear.floquet.hsu import band_speeds
-from facegear.floquet.models import Excited, Model, parameter_path
+from facegear.floquet.band_speeds import band_speeds
+from facegear.floquet.models import Model, parameter_path
+from facegear.floquet.modified_models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.parallel import computed
 from facegear.maps.response_map import frequency_response

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from facegear.floquet.hsu import band_speeds
+from facegear.floquet.band_speeds import band_speeds
 from facegear.floquet.modal import modal_expansion
 from facegear.floquet.models import replace_parameter
 from facegear.maps.stability_map import stability_map

@@ -8,9 +8,9 @@ from typing import TypeVar
 
 from facegear.drives.studies.study import Quantity, Settings
 from facegear.floquet.models import Model, replace_parameter, value_of
-from facegear.floquet.periodic import named
 from facegear.mechanics.plate import Body
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.mechanics.properties import MeshLoad
+from facegear.support.parameters import named, rad_per_s
 
 ModelT = TypeVar("ModelT", bound=Model)
 

@@ -20,8 +20,8 @@ from facegear.drives.studies.force import PRESSED, force_as_set, force_controls
 from facegear.drives.studies.study import Choice, Quantity, Settings, Study
 from facegear.floquet.models import Model
 from facegear.mechanics import cases
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad
 
 # Angles that the second and third pinion have when they are first switched on [°].
 _SECOND, _THIRD = 120.0, 240.0
