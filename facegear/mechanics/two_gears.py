@@ -32,8 +32,8 @@ from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, disk_matrices, mirror_signs, modal_mass, unit_shape
 from facegear.mechanics.mesh_oscillator import MeshOscillator
+from facegear.mechanics.pinions_on_disk import Driving, PinionsOnDisk
 from facegear.mechanics.radial_modes import RadialModes
-from facegear.mechanics.transverse import Driving, PinionsOnDisk
 from facegear.support.parameters import keep, one_of, positive
 from facegear.support.types import FloatArray
 
