@@ -9,7 +9,6 @@ import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -232,10 +231,10 @@ def write_config() -> Path:
     return path
 
 
-def run_sphinx(output: Path, *options: str) -> TaskFailed | None:
-    """Build pages from scratch into a folder; any warning of Sphinx is a failure."""
-    command = [str(Path(sysconfig.get_path("scripts")) / "jupyter-book"), "build", str(SOURCE)]
-    command += ["--config", str(write_config()), "--path-output", str(output)]
+def run_sphinx(*options: str) -> TaskFailed | None:
+    """Build pages; any warning of Sphinx is a failure."""
+    command = [sys.executable, str(ROOT / "tools" / "build_pages.py"), "build", str(SOURCE)]
+    command += ["--config", str(write_config()), "--path-output", str(BUILD)]
     command += [*options, "-W", "-n", "--keep-going"]
     log = BUILD / "logs" / "sphinx.txt"
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -263,17 +262,17 @@ def build_pages() -> TaskFailed | None:
     # From scratch, because Sphinx repeats a warning only for pages it reads anew: after a failed run the
     # next one would pass.
     shutil.rmtree(PAGES, ignore_errors=True)
-    return run_sphinx(BUILD)
+    return run_sphinx()
 
 
 def print_pages() -> TaskFailed | None:
-    """Build the book as one page and print that."""
-    folder = BUILD / "single"
+    """Build the book as one page, of the sources as they were read for the pages, and print that."""
+    folder = PAGES / "singlehtml"
     shutil.rmtree(folder, ignore_errors=True)
-    problem = run_sphinx(folder, "--builder", "singlehtml")
+    problem = run_sphinx("--builder", "singlehtml")
     if problem is not None:
         return problem
-    page = folder / "_build" / "singlehtml" / "intro.html"
+    page = folder / "intro.html"
     command = [sys.executable, str(ROOT / "tools" / "print_book.py"), str(page), str(PDF)]
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
     return None if done.returncode == 0 else TaskFailed(done.stderr.strip() or "the book was not printed")

@@ -1,6 +1,6 @@
 """Print the whole book, built as one page, to one PDF with Chromium.
 
-`python tools/print_book.py build/pdf/_build/singlehtml/intro.html build/facegear.pdf`
+`python tools/print_book.py build/_build/singlehtml/intro.html build/facegear.pdf`
 
 Nothing is fetched from beyond the folder of that page. What only works on a screen is left out: sliders and turning
 views (each has a still picture beside it), folded code, menus. Tables and equations wider than the paper shrink to it.

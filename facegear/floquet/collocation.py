@@ -156,6 +156,13 @@ class FreeMotion:
             )
         return np.concatenate(parts)
 
+    def _forces(self, column: LoadColumn) -> FloatArray:
+        """Contact forces at the nodes of each panel, for unit modal coordinates at its start, (V, P, N p, 2n)."""
+        known, forces = self._known
+        if np.array_equal(known.stacked(), column.stacked()):
+            return forces
+        return self.panels.forces(self._load_parameters(column))
+
     def _load_parameters(self, column: LoadColumn) -> FloatArray:
         """Stiffness, damping and mass of all loads, springs taken back included, shape (3, V, p)."""
         springs = np.broadcast_to(self._held.springs, (len(column), self._held.springs.shape[1]))
@@ -175,24 +182,28 @@ class FreeMotion:
         if system.force is not None:
             force = system.force(at.fractions)
         push = force @ modes.input[0].T
-        alone = spread * (span * (integration @ (push / spread)))
+        pushed_only = spread * (span * (integration @ (push / spread)))
         at_end = half * span[..., 0] * np.einsum("j,pjm->pm", weights, push / spread)
-        known = (at.reading[:, 0] @ alone[..., None])[..., 0].real
+        known = (at.reading[:, 0] @ pushed_only[..., None])[..., 0].real
         (shapes,) = at_nodes(self._held.systems, lambda load: load.shape, at.fractions)
-        known[2] += (shapes @ np.linalg.solve(system.mass, force[..., None]))[..., 0]
+        moved = np.linalg.solve(system.mass, force.reshape(-1, system.size).T).T.reshape(force.shape)
+        known[2] += (shapes @ moved[..., None])[..., 0]
         known[..., : len(system.loads)] -= known_errors(system, at.fractions)
 
-        parameters = self._load_parameters(column)
-        left, right = self.panels.equations(parameters)
-        sizes = (parameters[:, 0, np.newaxis, np.newaxis] * known).sum(axis=0).reshape(*right.shape[1:3], 1)
-        forces = np.linalg.solve(left[0], np.concatenate([right[0], sizes], axis=-1))
+        # Forces for unit states are known from the search for the panels.
+        parameters, by_state = self._load_parameters(column), self._forces(column)[0]
+        left, _ = self.panels.equations(parameters)
+        sizes = (parameters[:, 0, np.newaxis, np.newaxis] * known).sum(axis=0).reshape(*left.shape[1:3], 1)
+        alone = np.linalg.solve(left[0], sizes)
         to_state, to_real = modes.state_from_real()[0], modes.real_from_state()[0]
-        whole = -(self.panels.input[0] @ forces)
-        offsets = whole[..., -1] + np.concatenate([at_end.real, at_end.imag], axis=-1)
+        reached = to_state @ self.panels.input[0]
+        own, number = np.unique(np.round(np.diff(self.edges), 12), return_index=True, return_inverse=True)[1:]
+        free = (to_state @ self.panels.free[0, own] @ to_real)[number]
+        offsets = np.concatenate([at_end.real, at_end.imag], axis=-1) @ to_state.T
 
         def inside(starts: FloatArray) -> FloatArray:
             real = starts @ to_real.T
-            loads = (forces[..., :-1] @ real[..., None])[..., 0] + forces[..., -1]
+            loads = (by_state @ real[..., None] + alone)[..., 0]
             pushed = push - (beta.swapaxes(-1, -2) @ loads.reshape(*beta.shape[:3], 1))[..., 0]
             first = real[:, np.newaxis, : modes.size] + 1j * real[:, np.newaxis, modes.size :]
             y = spread * (half[:, np.newaxis] * first + span * (integration @ (pushed / spread)))
@@ -202,8 +213,8 @@ class FreeMotion:
         return MotionPanels(
             edges=self.edges,
             nodes=x,
-            steps=np.asarray(to_state @ (self.panels.free[0] + whole[..., :-1]) @ to_real, dtype=float),
-            offsets=np.asarray(offsets @ to_state.T, dtype=float),
+            steps=np.asarray(free - reached @ (by_state @ to_real), dtype=float),
+            offsets=np.asarray(offsets - (reached @ alone)[..., 0], dtype=float),
             inside=inside,
         )
 
@@ -221,10 +232,7 @@ class FreeMotion:
 
     def _steps(self, column: LoadColumn) -> FloatArray:
         """Transition matrices of the panels, shape (V, P, 2n, 2n)."""
-        known, forces = self._known
-        if not np.array_equal(known.stacked(), column.stacked()):
-            forces = self.panels.forces(self._load_parameters(column))
-        steps = self.panels.free - self.panels.input @ forces
+        steps = self.panels.free - self.panels.input @ self._forces(column)
         for number, system in enumerate(self.systems):
             own = slice(None) if len(self.systems) == 1 else slice(number, number + 1)
             # Right to left: the kicks come first, then the jumps of the same instant, then the panel.

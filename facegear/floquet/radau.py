@@ -33,7 +33,7 @@ from facegear.support.types import FloatArray
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB.
 _STACK_ENTRIES = 1_000_000
 # Angle of a panel to begin with [rad].
-_PANEL_ANGLE = 8.0
+_PANEL_ANGLE = 11.0
 # Rounds of halving after which a family is given up.
 _MOST_ROUNDS = 24
 # Legendre coefficients that tell the size of the accelerations on a panel, and how well they are resolved.

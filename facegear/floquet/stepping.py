@@ -11,7 +11,7 @@ import numpy as np
 from facegear.floquet.collocation import chain
 from facegear.floquet.compiled import where_compiled
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, have_one_course, require_system
-from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev, Side
+from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev, Side, same_function
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest norm of an exponent before it is squared.
@@ -344,7 +344,8 @@ def _values(
 ) -> FloatArray:
     """Values of one periodic function of each load, evaluated once if they share it: (V or 1, m, components)."""
     functions = [part(load) for load in loads]
-    if all(function is functions[0] for function in functions):
+    # A model may build them anew for each speed.
+    if all(same_function(function, functions[0]) for function in functions):
         functions = functions[:1]
     one = np.ones((fraction.size, 1))
     return np.stack([one if function is None else function(fraction, side) for function in functions])

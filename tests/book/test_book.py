@@ -141,25 +141,24 @@ def address(request: pytest.FixtureRequest) -> str:
 def look(
     server: str, contexts: dict[str, BrowserContext], address: str
 ) -> Iterator[Callable[[int, str], Visit]]:
-    """Show the page at hand, which is opened twice: light on a telephone, dark on a wide screen.
+    """Show the page at hand, which is opened once: light on a telephone.
 
-    From there it is made as wide or narrow as wanted, the way a window is or a telephone that is turned.
+    From there it is made as wide or narrow as wanted, the way a window is or a telephone that is turned, and light or
+    dark, the way a machine changes that in the evening. The title page is opened in dark as well.
     """
-    opened: dict[tuple[int, str], Visit] = {}
+    opened: list[Visit] = []
 
     def show(width: int, scheme: str) -> Visit:
-        first_width = WIDEST if scheme == "dark" else NARROWEST
-        key = first_width, scheme
-        if key not in opened:
-            opened[key] = opened_page(contexts[scheme], server, address, first_width)
-        visit = opened[key]
-        if visit.page.viewport_size["width"] != width:
-            visit.page.set_viewport_size({"width": width, "height": 900})
-            visit.page.evaluate(TWO_FRAMES)
-        return visit
+        if not opened:
+            opened.append(opened_page(contexts["light"], server, address, NARROWEST))
+        page = opened[0].page
+        page.set_viewport_size({"width": width, "height": 900})
+        page.emulate_media(color_scheme=scheme)
+        page.evaluate(TWO_FRAMES)
+        return opened[0]
 
     yield show
-    for visit in opened.values():
+    for visit in opened:
         visit.page.close()
 
 

@@ -109,6 +109,7 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     data = xr.Dataset(
         forces | peaks | {"peak_label": ("peak", ["1/1"]), "peak_load": ("peak", [0])},
         {"speed": [60.0, 61.0]},
+        {"at_borders": 0},
     )
     found = Assessment(
         file,
@@ -122,7 +123,13 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     )
     folder = write_assessment(found, tmp_path / "assessment").parent
     arrays = sorted(path.name for path in folder.glob("*.nc"))
-    assert arrays == ["disk_response.nc", "disk_response_peaks.nc", "models.nc", "torsion_response.nc"]
+    assert arrays == [
+        "disk_response.nc",
+        "disk_response_peaks.nc",
+        "models.nc",
+        "torsion_response.nc",
+        "torsion_response_peaks.nc",
+    ]
     for name in arrays:
         assert_same(folder / name)
     models, response = (pd.read_csv(folder / f"{name}.csv") for name in ("models", "disk_response"))
@@ -130,7 +137,7 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     assert response["force_rms_N"].tolist()[0] == 1.0
     assert response["force_rms_N"].isna().tolist() == [False, True]
     assert response["speed_rpm"].tolist() == pytest.approx([572.957795131, 582.507091716])
-    assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 3 + [".html"] + [".nc"] * 4
+    assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 3 + [".html"] + [".nc"] * 5
 
 
 def test_points_of_a_tooth_are_read_by_pandas(tmp_path):
