@@ -20,6 +20,7 @@ from facegear.mechanics.disk import REFERENCE_SPEED, disk_matrices, reference_st
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
 from facegear.mechanics.properties import MeshLoad
+from facegear.support.kinds import require_kinds
 from facegear.support.parameters import designed, finite_array, keep, within
 from facegear.support.types import FloatArray
 
@@ -89,9 +90,7 @@ class PinionsOnDisk(ABC):
     phases: Sequence[float] | None = None
 
     def __post_init__(self) -> None:
-        for name, kind in (("body", Body), ("load", MeshLoad), ("contact", Contact)):
-            if not isinstance(getattr(self, name), kind):
-                raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
+        require_kinds(self, body=Body, load=MeshLoad, contact=Contact)
         if self.force is not None and not isinstance(self.force, DrivingForce):
             raise TypeError(f"force must be a DrivingForce or None, got {self.force!r}")
         if self.force is not None:

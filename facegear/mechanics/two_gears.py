@@ -34,6 +34,7 @@ from facegear.mechanics.disk import disk_coordinates, disk_matrices, mirror_sign
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.pinions_on_disk import Driving, PinionsOnDisk
 from facegear.mechanics.radial_modes import RadialModes
+from facegear.support.kinds import require_kind
 from facegear.support.parameters import keep, one_of, positive
 from facegear.support.types import FloatArray
 
@@ -103,8 +104,7 @@ class TwoGears:
     roles: Sequence[Role] | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.gear, MeshOscillator):
-            raise TypeError(f"gear must be a MeshOscillator, got {self.gear!r}")
+        require_kind("gear", self.gear, MeshOscillator)
         for name in ("sides", "phases"):
             if (value := getattr(self.gear, name)) is not None:
                 raise ValueError(f"gear.{name} must be None between two gears, got {value!r}")
