@@ -106,7 +106,7 @@ def test_bound_from_difference_quotients():
 
 def test_fits_scatter_as_the_bound_says():
     three = survey()
-    measured = drawn(three.expected(LOSSES)[0], three.deviations, 40, seed=3)
+    measured = drawn(three.expected(LOSSES)[0], three.deviations, 24, seed=3)
     fits = np.array([three.identified(values, LOSSES) for values in measured])
     ratio, low, high = scatter_over_bound(fits, LOSSES, three.bound(LOSSES))
     assert low < ratio < high
