@@ -45,7 +45,7 @@ _MOST_EXPONENT = 6000.0
 # Cells go together if their norms are at least this part of the largest among them, or if they are so few.
 _TOGETHER = 0.8
 # Cells fewer than these are not worth another library.
-_FEWEST = 5
+_FEWEST = 2
 
 
 class Members(NamedTuple):

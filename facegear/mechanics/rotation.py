@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.collocation import chain
+from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.free_modes import FreeModes
 from facegear.floquet.gauss_panels import gauss_rule, panel_edges
 from facegear.floquet.loads import ContactLoad
@@ -279,10 +280,9 @@ def growth_rates_at_angles(model: Transverse, speed: float, pinion_angles: Array
     waves = DiskWaves.of(model, system)
     phases = phase_split(model.body.drive, angles).phase
     _, group = np.unique(np.rint(phases / _SAME_PHASE), axis=0, return_inverse=True)
-    radii = np.empty(angles.shape[0])
+    matrices = np.empty((angles.shape[0], 2 * waves.waves.size, 2 * waves.waves.size))
     for number in range(int(group.max()) + 1):
         own = np.flatnonzero(group.ravel() == number)
         pinions = TurnedPinions(model, speed, phases[own[0]], waves)
-        multipliers = np.linalg.eigvals(pinions.transition_matrices(angles[own]))
-        radii[own] = np.abs(multipliers).max(axis=-1)
-    return np.asarray(np.log(radii) / system.period, dtype=float)
+        matrices[own] = pinions.transition_matrices(angles[own])
+    return np.asarray(np.log(spectral_radii(matrices)) / system.period, dtype=float)
