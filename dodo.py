@@ -77,6 +77,8 @@ VIGNETTES = [
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 # Each notebook shares its maps out over its half of the processors (joblib's own name for that).
 HALF_THE_PROCESSORS = {"LOKY_MAX_CPU_COUNT": str(max(1, (os.cpu_count() or 1) // 2))}
+# Modules are compiled once and kept, whatever the caller's shell says; else each notebook would compile them anew.
+COMPILED_ONCE = {"PYTHONDONTWRITEBYTECODE": ""}
 
 
 def files(folder: str, pattern: str) -> list[Path]:
@@ -120,7 +122,7 @@ def execute_notebook(notebook: Path) -> TaskFailed | None:
             stdout=subprocess.PIPE,
             stderr=messages,
             text=True,
-            env=os.environ | ONE_THREAD | HALF_THE_PROCESSORS,
+            env=os.environ | ONE_THREAD | HALF_THE_PROCESSORS | COMPILED_ONCE,
         ) as process,
     ):
         for line in process.stdout:

@@ -22,8 +22,9 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.paths import loaded_contact, point_contact
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 LOAD = MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0)
 GROWTH_RATES, PATHS = 50, 50

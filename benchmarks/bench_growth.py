@@ -21,8 +21,9 @@ from facegear.floquet.columns import column_spectral_radii
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 DRIVE = Drive(26, 130, 3.175e-3)
 LOAD = MeshLoad(stiffness=1.0, damping=3e-6, mass=1.0)

@@ -12,7 +12,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, Rate
+from facegear.floquet.loads import ContactLoad, Rate
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 
 Array = NDArray[np.float64]

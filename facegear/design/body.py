@@ -15,8 +15,9 @@ from facegear.maps.lobes import CriticalThickness, highest_lobes
 from facegear.maps.parallel import in_processes
 from facegear.mechanics.contact import CENTROID, Contact
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE, Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, ascending, keep, positive, within
+from facegear.support.parameters import ascending, keep, positive, within
 
 
 def critical_thickness(

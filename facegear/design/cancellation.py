@@ -30,21 +30,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from facegear.floquet.collocation import gauss_rule
+from facegear.floquet.gauss_panels import gauss_rule
 from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_modes
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.rotation import DiskWaves
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import (
-    MeshLoad,
-    finite_array,
-    integer_at_least,
-    positive,
-    within,
-)
+from facegear.support.parameters import finite_array, integer_at_least, positive, within
 from facegear.support.types import ComplexArray
 
 Kind = Literal["sum", "difference"]

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from scipy.stats import chi2
 
 from facegear.design.fits import Fit, local_fits, spread_starts
+from facegear.design.measurements import checked_deviations, checked_exponents
 from facegear.floquet.models import (
     Model,
     parameter_path,
@@ -104,7 +105,7 @@ class Survey:
             integer_within(f"motions[{number}]", motion, 0, count - 1)
         if len(set(self.motions)) < len(self.motions):
             raise ValueError(f"motions must differ, got {self.motions}")
-        keep(self, deviations=_checked_deviations(self.deviations, len(self.motions)))
+        keep(self, deviations=checked_deviations(self.deviations, len(self.motions)))
 
     @cached_property
     def intact(self) -> ExponentSensitivity:
@@ -222,7 +223,7 @@ class Survey:
             further apart than such errors would move them: a narrower range, more motions or another speed may exclude
             all but one.
         """
-        values = _checked_exponents("measured", measured, len(self.motions))
+        values = checked_exponents("measured", measured, len(self.motions))
         least, most = _checked_range(least, most)
         first = (
             np.full(self._values.size, max(least, min(0.0, most)))
@@ -302,108 +303,9 @@ def _told(fit: Fit) -> str:
     return f"{fit.values.round(4).tolist()} (χ² = {fit.misfit:.3g})"
 
 
-def _checked_deviations(deviations: ArrayLike, motions: int) -> FloatArray:
-    """Return standard deviations of decay rate and frequency of each motion, shape (motions, 2)."""
-    try:
-        sizes = np.array(deviations, dtype=float)
-    except (TypeError, ValueError):
-        raise TypeError(
-            f"deviations must be real numbers, shape ({motions}, 2), got {deviations!r}"
-        ) from None
-    if sizes.shape != (motions, 2):
-        raise ValueError(
-            f"deviations must have shape ({motions}, 2), of decay rate and frequency of each motion; got shape "
-            f"{sizes.shape}"
-        )
-    if np.isnan(sizes).any() or (sizes <= 0.0).any() or np.isinf(sizes).all():
-        raise ValueError(
-            "deviations must be greater than 0, infinite where nothing is measured, not all of them; got "
-            f"{sizes.tolist()}"
-        )
-    return sizes
-
-
-def _checked_exponents(name: str, exponents: ArrayLike, motions: int | None = None) -> ComplexArray:
-    """Return finite complex numbers, one a motion."""
-    wanted = (
-        "finite exponents, one a motion" if motions is None else f"{motions} finite exponents, one a motion"
-    )
-    try:
-        values = np.array(exponents, dtype=complex)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} must be {wanted}; got {exponents!r}") from None
-    if values.ndim != 1 or len(values) != (motions or len(values)) or not np.isfinite(values).all():
-        raise ValueError(f"{name} must be {wanted}; got {values.tolist()}")
-    return values
-
-
 def _checked_range(least: float, most: float) -> tuple[float, float]:
     """Return the range of losses, ascending and below 1."""
     least, most = finite("least", least), finite("most", most)
     if not least < most < 1.0:
         raise ValueError(f"most must be greater than least={least:g} and below 1, got {most!r}")
     return least, most
-
-
-def drawn(exponents: ArrayLike, deviations: ArrayLike, count: int, seed: int) -> ComplexArray:
-    """Draw measurements with independent normal errors, none where the deviation is infinite, shape (count, m).
-
-    Parameters
-    ----------
-    exponents : array_like of complex, shape (m,)
-    deviations : array_like, shape (m, 2)
-        As for :class:`Survey`.
-    count : int
-        1 or more.
-    seed : int
-        0 or greater.
-
-    Raises
-    ------
-    TypeError, ValueError
-        Naming the argument and what would be valid.
-    """
-    values = _checked_exponents("exponents", exponents)
-    sizes = _checked_deviations(deviations, len(values))
-    rng = np.random.default_rng(integer_at_least("seed", seed, 0))
-    errors = rng.normal(size=(integer_at_least("count", count, 1), len(sizes), 2))
-    errors *= np.where(np.isfinite(sizes), sizes, 0.0)
-    return np.asarray(values + errors[..., 0] + 1j * errors[..., 1], dtype=complex)
-
-
-def scatter_over_bound(losses: ArrayLike, truth: ArrayLike, bound: ArrayLike) -> tuple[float, float, float]:
-    """Mean square of standardised errors of losses over their number, 1 where the bound is attained, with 95 % limits.
-
-    Parameters
-    ----------
-    losses : array_like, shape (D, P)
-        Told from D measurements, 1 or more.
-    truth : array_like, shape (P,)
-    bound : array_like, shape (P, P)
-        Positive definite.
-
-    Returns
-    -------
-    ratio, low, high : float
-        The sum of squares of a sample of normal errors at the bound is χ² with D P degrees of freedom, which gives the
-        limits.
-
-    Raises
-    ------
-    TypeError, ValueError
-        Naming the argument and what would be valid.
-    """
-    told, right, least = (
-        finite_array(name, array) for name, array in (("losses", losses), ("truth", truth), ("bound", bound))
-    )
-    if told.ndim != 2 or told.size == 0:
-        raise ValueError(f"losses must have shape (D, P), one measurement or more, got {told.shape}")
-    size = told.shape[1]
-    if right.shape != (size,):
-        raise ValueError(f"truth must have shape ({size},), one a loss, got {right.shape}")
-    if least.shape != (size, size) or not (np.linalg.eigvalsh(least) > 0.0).all():
-        raise ValueError(f"bound must be a positive definite matrix ({size}, {size}), got {least.tolist()}")
-    errors = np.linalg.solve(np.linalg.cholesky(least), (told - right).T)
-    total, free = float((errors**2).sum()), errors.size
-    low, high = chi2.ppf([0.975, 0.025], free)
-    return total / free, total / float(low), total / float(high)

@@ -23,13 +23,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION, best_change
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
-from facegear.drives.tolerances import (
-    Tolerances,
-    WorstCase,
-    not_known,
-    worst_case,
-    worst_case_in_torsion,
-)
+from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import (
     Variant,
     other_teeth,
@@ -38,13 +32,14 @@ from facegear.drives.variants import (
     with_own_teeth,
 )
 from facegear.drives.verdict import FORCES, driven
-from facegear.floquet.models import Excited
+from facegear.drives.worst_case import WorstCase, not_known, worst_case, worst_case_in_torsion
+from facegear.floquet.modified_models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.crew import Crew
 from facegear.maps.response_map import frequency_response
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.transverse import FaceGears
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.parameters import number_of_workers
 from facegear.support.types import FloatArray
 

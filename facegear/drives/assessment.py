@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
 import xarray as xr
 
 from facegear.drives.assessment_table import model_table
@@ -19,9 +18,9 @@ from facegear.drives.growth_words import corner, mechanism, told, within_toleran
 from facegear.drives.intervals import Intervals, gaps, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
-from facegear.drives.tolerances import WorstCase
+from facegear.drives.torsion_response import in_words
+from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
-from facegear.support.labelled import variable
 from facegear.support.parameters import rpm
 
 SAFE, UNSTABLE, DEPENDS = "safe under all", "unstable under all", "depends"
@@ -198,19 +197,7 @@ class Assessment:
         """Largest force of a tooth pair over speed in torsion, against that at rest, in words; empty if not known."""
         if self.response is None:
             return ""
-        known = self.response.dropna("speed", subset=["force_highest"])
-        if not known.sizes["speed"]:
-            return "In torsion it is unstable at all speeds looked at: there is no steady load of the teeth."
-        highest = known["force_highest"].max("load")
-        at = int(highest.argmax("speed"))
-        largest, speed = float(highest[at]), float(highest.speed[at])
-        parted = int((known["force_lowest"].min("load") < 0.0).sum())
-        count, every = known.sizes["speed"], self.response.sizes["speed"]
-        return (
-            f"In torsion, at {count} of {every} speeds where it is stable, and as long as flanks do not part, a tooth "
-            f"pair bears up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / self.static_force:.3g} times the "
-            f"whole static force of {self.static_force:.4g} N. At {parted} of these {count} speeds flanks would part."
-        )
+        return in_words(self.response, self.static_force)
 
     @property
     def forced(self) -> tuple[str, ...]:
@@ -232,35 +219,6 @@ class Assessment:
         """Of the drive, for the provenance of arrays whose models have a basis each."""
         return (
             f"{describe(self.file)}; each model in a basis of its own, given beside it, not that of the file"
-        )
-
-    @property
-    def torsion_table(self) -> xr.Dataset | None:
-        """Steady response of the gearbox as arrays: forces of each tooth pair [N] over speed; None without one."""
-        if self.response is None:
-            return None
-        forces = {name: self.response[f"force_{name}"] for name in ("mean", "rms", "lowest", "highest")}
-        return xr.Dataset(
-            {
-                f"force_{name}": variable(
-                    ("speed", "pair"),
-                    part.values,
-                    f"Force of a tooth pair, {name}",
-                    "N",
-                    rtol=1e-6,
-                    atol=1e-6,
-                )
-                for name, part in forces.items()
-            },
-            {
-                "speed": (
-                    "speed",
-                    self.response.speed.values,
-                    {"units": "rad/s", "long_name": "Speed of the face gear"},
-                ),
-                "pair": np.arange(self.response.sizes["load"]),
-            },
-            {"parameters": describe(self.file)},
         )
 
     @property

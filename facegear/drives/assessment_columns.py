@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from facegear.drives.growth_words import corner
-from facegear.drives.tolerances import WorstCase
+from facegear.drives.worst_case import WorstCase
 from facegear.support.parameters import rpm
 
 

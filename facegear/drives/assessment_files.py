@@ -17,6 +17,8 @@ from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import told
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
+from facegear.drives.report_arrays import describe
+from facegear.drives.torsion_response import peaks_table, response_table
 from facegear.drives.variants import Variant
 from facegear.maps.tracing import Tongue
 from facegear.plotting import assessment as draw
@@ -179,8 +181,8 @@ def _in_torsion(found: Assessment) -> Iterator[Paragraph | Picture]:
     yield Paragraph(f"{found.dynamic_load}")
     yield Picture(
         draw.dynamic_load(found.response, found.static_force),
-        "Forces between teeth under the torque of one pinion's power, over speed; none where the gearbox is unstable. "
-        "The axis is linear near zero and logarithmic beyond.",
+        "Forces between teeth under the torque of one pinion's power, over speed, and at its resonances between the "
+        "speeds; none where the gearbox is unstable. The axis is linear near zero and logarithmic beyond.",
         "Two curves over speed that part near resonances",
     )
 
@@ -201,7 +203,8 @@ def _of_the_disk(found: Assessment) -> Iterator[Paragraph | Picture | Table | Li
     yield Picture(
         draw.disk_forces(computed, found.static_force),
         f"Force of a mesh, lowest and highest over a mesh period, over the static one, with the file's own contact "
-        f"({found.disk_responses[0].variant.contact}); below zero flanks part. None where the model is unstable.",
+        f"({found.disk_responses[0].variant.contact}); below zero flanks part. Triangles: resonances between the "
+        "speeds. None where the model is unstable.",
         "Bands over speed around one that widen at resonances",
     )
     rows = tuple(
@@ -261,16 +264,19 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
     with folder_written_whole(Path(folder)) as place:
         write_table(model_columns(table), place / "models.csv")
         labelled.save(table, place / "models.nc")
-        if (torsion := found.torsion_table) is not None:
-            labelled.save(torsion, place / "torsion_response.nc")
+        if found.response is not None:
+            parameters = describe(found.file)
+            labelled.save(response_table(found.response, parameters), place / "torsion_response.nc")
+            if (peaks := peaks_table(found.response, parameters)) is not None:
+                labelled.save(peaks, place / "torsion_response_peaks.nc")
         if any(case.corners for case in found.worst.values()):
             write_table(corner_columns(found.worst), place / "tolerances.csv")
         if (response := found.response_table) is not None:
             labelled.save(response, place / "disk_response.nc")
             write_table(response_columns(response), place / "disk_response.csv")
-        if (peaks := found.response_peaks) is not None:
-            labelled.save(peaks, place / "disk_response_peaks.nc")
-            write_table(peak_columns(peaks), place / "disk_response_peaks.csv")
+        if (of_disk := found.response_peaks) is not None:
+            labelled.save(of_disk, place / "disk_response_peaks.nc")
+            write_table(peak_columns(of_disk), place / "disk_response_peaks.csv")
         title = f"Assessment of {found.file.name}"
         (place / PAGE).write_text(page(title, sections(found)), encoding="utf-8")
     return Path(folder, PAGE)

@@ -15,8 +15,8 @@ from facegear.floquet.models import replace_at
 from facegear.geometry.drive import Drive
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.paths import loaded_contact, point_contact
+from facegear.mechanics.properties import Material
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
-from facegear.support.parameters import Material
 
 NAMES: Mapping[str, str] = MappingProxyType(
     {

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from facegear.drives.disk_response import MOST_MOVED, DiskResponse, largest_departure
+from facegear.drives.torsion_response import AT_BORDERS
 from facegear.support.parameters import rpm
 
 # Significant digits of a force that two bases agree on, and of one that they do not.
@@ -81,10 +82,12 @@ def _parted(data: xr.Dataset, static: float) -> str:
     known = data.dropna("speed", subset=["force_highest"])
     parted = int((known["force_lowest"].min("load").values < -static).sum())
     words = f"Of {data.sizes['speed']} speeds it is stable at {known.sizes['speed']}, and flanks would part at {parted}"
+    rises = known.sizes["speed"] < data.sizes["speed"] or data.attrs["at_borders"]
+    last = AT_BORDERS if rises else ""
     if not (peaks := data.sizes["peak"]):
-        return f"{words}."
+        return f"{words}.{last}"
     beyond = int((data["peak_force_lowest"].values < -static).sum())
-    return f"{words}; of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them, at {beyond}."
+    return f"{words}; of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them, at {beyond}.{last}"
 
 
 def rounded(number: float, digits: int) -> str:

@@ -33,13 +33,15 @@ from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import Material, MeshLoad
 from facegear.mechanics.radial_modes import BORE_RATIO_RANGE
 from facegear.mechanics.tooth_damage import DamagedTooth
 from facegear.mechanics.torsional import Torsional
-from facegear.mechanics.transverse import FaceGears, Transverse
+from facegear.mechanics.transverse import Transverse
 from facegear.mechanics.two_gears import Role, TwoGears
-from facegear.support.parameters import Material, MeshLoad, rpm
+from facegear.support.parameters import rpm
 from facegear.support.plain_yaml import read_plain_yaml
 
 _INCH = 25.4e-3
@@ -102,7 +104,7 @@ class DriveFile:
     @property
     def not_buildable(self) -> tuple[str, ...]:
         """What of the shafts cannot be built, one sentence each; empty without lengths of shafts."""
-        return getattr(self.torsional, "not_buildable", ())
+        return () if self.torsional is None else self.torsional.not_buildable
 
 
 def read_drive_file(path: str | Path) -> DriveFile:

@@ -13,9 +13,9 @@ from facegear.drives.forces import PLACES, RIM
 from facegear.drives.keys import PER_SI, Key, Section
 from facegear.geometry.proportions import FEWEST_TEETH
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.radial_modes import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS
 from facegear.mechanics.two_gears import DRIVES
-from facegear.support.parameters import STEEL
 
 # Tongues crowd towards standstill: their number, and the time to find them, goes with highest over lowest speed.
 WIDEST_SPEED_RATIO = 50.0

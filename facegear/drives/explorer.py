@@ -3,32 +3,30 @@
 from __future__ import annotations
 
 import asyncio
-import base64
-import io
 import time
 from collections.abc import Iterator
-from decimal import Decimal
 from html import escape
 from pathlib import Path
 from typing import Any
 
 import ipywidgets
 import numpy as np
-import plotly.graph_objects as go
 import xarray as xr
-from matplotlib.colors import Normalize, to_hex
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from facegear.drives.cell import cell_detail
 from facegear.drives.cell_figure import RING, cell_figure, described, draw_detail, rows
 from facegear.drives.explore import View, map_stages, reading_map, unstable
-from facegear.drives.studies.study import Choice, Control, Quantity, Study
+from facegear.drives.map_figure import heat, map_figure
+from facegear.drives.studies.study import Quantity, Study
+from facegear.drives.widgets import look, refused, said, small, widget_of
 from facegear.floquet.models import Model, replace_parameter
-from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, WIDTH, styled
+from facegear.plotting.interactive import image
+from facegear.plotting.style import GROWTH, WIDTH, styled
 from facegear.support.types import FloatArray
 
 _REFUSALS = (TypeError, ValueError, ArithmeticError)
-_COLOURS = [[k / 10, to_hex(GROWTH(k / 10))] for k in range(11)]
 
 
 @styled
@@ -102,19 +100,19 @@ class MapExplorer:
     def __init__(self, study: Study, folder: str | Path = ".") -> None:
         self.study = study
         self.folder = Path(folder)
-        self.controls = {control.name: _control(control) for control in (*study.controls, study.speed)}
+        self.controls = {control.name: widget_of(control) for control in (*study.controls, study.speed)}
         self.controls[study.speed.name].description = f"highest {study.speed.label}"
         self.vertical = ipywidgets.Dropdown(
             options=[(quantity.label, quantity.name) for quantity in study.sweepable],
             value=study.vertical,
             description="vertical axis",
-            **_look(),
+            **look(),
         )
-        self.column, self.row = ipywidgets.IntSlider(**_look()), ipywidgets.IntSlider(**_look())
+        self.column, self.row = ipywidgets.IntSlider(**look()), ipywidgets.IntSlider(**look())
         for slider in (self.column, self.row):
             slider.readout, slider.continuous_update = False, False
         self.message, self.status, self.report, self.picture = (ipywidgets.HTML() for _ in range(4))
-        self.name = ipywidgets.Text(value="my_drive.yaml", description="drive file", **_look())
+        self.name = ipywidgets.Text(value="my_drive.yaml", description="drive file", **look())
         self.save = ipywidgets.Button(description="Save as drive file")
         self.save.on_click(lambda _: self.save_as(self.name.value))
         self.saved = ipywidgets.HTML()
@@ -123,12 +121,12 @@ class MapExplorer:
         self._quantity = study.swept(study.vertical)
         self._model, axes = self._begun(self._quantity)
         self._chart = reading_map(self._model, *axes)
-        self.figure = _map_figure(self._chart, self._quantity, study.speed)
+        self.figure = map_figure(self._chart, self._quantity, study.speed)
         self.figure.data[0].on_click(self.click)
         rows, columns = self._chart.shape
         self.column.max, self.row.max = columns - 1, rows - 1
         self.column.value, self.row.value = columns // 2, rows // 2
-        self.status.value = _small(f"{columns} × {rows} cells")
+        self.status.value = small(f"{columns} × {rows} cells")
         self.widget = self._laid_out()
         self._show_cell()
         for control in (*self.controls.values(), self.vertical):
@@ -215,18 +213,14 @@ class MapExplorer:
             with path.open("x", encoding="utf-8") as file:
                 file.write(text)
         except FileExistsError:
-            self.saved.value = _said(f"{path} is there already: choose another name.")
+            self.saved.value = said(f"{path} is there already: choose another name.")
         except (*_REFUSALS, OSError) as problem:
-            self.saved.value = _said(f"Not saved: {problem}")
+            self.saved.value = said(f"Not saved: {problem}")
         else:
-            self.saved.value = _said(f"Saved: {path.resolve()}")
+            self.saved.value = said(f"Saved: {path.resolve()}")
 
     def _refuse(self, problem: Exception) -> None:
-        self.message.value = (
-            f'<p role="alert" style="color:{INK};border-left:4px solid {VERMILION};padding:0 0.6em;'
-            f'line-height:1.4;white-space:normal"><b>Not possible:</b> {escape(str(problem))}. '
-            "The map still shows the last settings that were.</p>"
-        )
+        self.message.value = refused(problem)
 
     def _refine(self, stages: Iterator[xr.DataArray], turn: int) -> Iterator[None]:
         """Draw the stages of the map as they are there, then the cell, unless a control has changed meanwhile."""
@@ -239,7 +233,7 @@ class MapExplorer:
             if turn == self._turn:
                 self._show_cell()
                 rows, columns = self._chart.shape
-                self.status.value = _small(
+                self.status.value = small(
                     f"{columns} × {rows} cells, refined in {time.perf_counter() - started:.1f} s"
                 )
         except _REFUSALS as problem:
@@ -249,8 +243,8 @@ class MapExplorer:
         self._chart = chart
         with self.figure.batch_update():
             self.figure.layout.yaxis.title.text = self._quantity.label
-            self.figure.data[0].update(_heat(chart, self._quantity, self.study.speed))
-        self.status.value = _small(f"refining, {chart.attrs['computed']:.0%} of the cells are final")
+            self.figure.data[0].update(heat(chart, self._quantity, self.study.speed))
+        self.status.value = small(f"refining, {chart.attrs['computed']:.0%} of the cells are final")
 
     def _show_cell(self) -> None:
         """Mark the chosen cell and show what happens in it."""
@@ -272,12 +266,8 @@ class MapExplorer:
         self.report.value = (
             f'<p class="facegear-report" style="line-height:1.4;white-space:normal">{escape(words)}</p>'
         )
-        drawn = _png(cell_figure(detail))
         alt = "Multipliers in the complex plane and the critical motion. " + words
-        self.picture.value = (
-            f'<img class="facegear-cell" src="data:image/png;base64,{drawn}" alt="{escape(alt)}" '
-            'style="max-width:100%">'
-        )
+        self.picture.value = image(cell_figure(detail), alt, name="facegear-cell")
 
     def _laid_out(self) -> ipywidgets.Widget:
         saving = [] if self.study.content is None else [self.name, self.save, self.saved]
@@ -312,101 +302,3 @@ def _in_pieces(work: Iterator[None]) -> None:
 
 
 _TASKS: set[asyncio.Task[None]] = set()
-
-
-def _look() -> dict[str, Any]:
-    return {
-        "layout": ipywidgets.Layout(width="98%"),
-        "style": {"description_width": "17rem"},
-    }
-
-
-def _control(control: Control) -> Any:
-    if isinstance(control, Choice):
-        return ipywidgets.Dropdown(
-            options=list(control.options), value=control.value, description=control.label, **_look()
-        )
-    limits = {"min": control.lowest, "max": control.highest, "step": control.step, "value": control.value}
-    if control.whole:
-        limits = {name: int(number) for name, number in limits.items()}
-        return ipywidgets.IntSlider(**limits, description=control.label, continuous_update=False, **_look())
-    places = max(0, -int(Decimal(str(control.step)).normalize().as_tuple().exponent))
-    return ipywidgets.FloatSlider(
-        **limits,
-        description=control.label,
-        readout_format=f".{places}f",
-        continuous_update=False,
-        **_look(),
-    )
-
-
-def _heat(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> dict[str, Any]:
-    """Turn a map into what Plotly draws: unstable growth rates as colours, all of them to hover over."""
-    growth = chart.values
-    # Gaps are None: in JSON, which goes to the page, there is no NaN.
-    shown = growth.astype(object)
-    shown[~unstable(chart)] = None
-    return {
-        "x": chart["speed"].values / speed.unit,
-        "y": chart[chart.dims[0]].values / quantity.unit,
-        "z": shown.tolist(),
-        "customdata": growth,
-        "zmin": 0.0,
-        "zmax": max(float(growth.max()), 1e-9),
-    }
-
-
-def _map_figure(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> go.FigureWidget:
-    """Map and the mark of a cell."""
-    heatmap = go.Heatmap(
-        **_heat(chart, quantity, speed),
-        colorscale=_COLOURS,
-        colorbar={"title": {"text": "growth rate [1/s]", "side": "right"}},
-        hovertemplate="%{x:.4g}, %{y:.4g}<br>growth rate %{customdata:.3g} 1/s<extra></extra>",
-    )
-    mark = go.Scatter(
-        x=[float(chart["speed"][chart.shape[1] // 2]) / speed.unit],
-        y=[float(chart[chart.dims[0]][chart.shape[0] // 2]) / quantity.unit],
-        mode="markers",
-        marker={"symbol": "circle-open", "size": 14, "color": VERMILION, "line": {"width": 3}},
-        hoverinfo="skip",
-        showlegend=False,
-    )
-    axis = {
-        "showgrid": False,
-        "zeroline": False,
-        "showline": True,
-        "linecolor": INK,
-        "ticks": "outside",
-        "fixedrange": True,
-    }
-    figure = go.FigureWidget(
-        data=[heatmap, mark],
-        layout={
-            "autosize": True,
-            "height": 430,
-            "margin": {"l": 70, "r": 10, "t": 10, "b": 60},
-            "plot_bgcolor": "white",
-            "dragmode": False,
-            "xaxis": axis | {"title": {"text": speed.label}},
-            "yaxis": axis | {"title": {"text": quantity.label}},
-            "font": {"size": 14, "color": INK},
-        },
-    )
-    # Its buttons zoom, which the axes do not, and send the chart to a server.
-    figure._config = {"displayModeBar": False, "responsive": True}
-    return figure
-
-
-def _small(text: str) -> str:
-    return f'<p class="facegear-status" style="color:{GREY}">{escape(text)}</p>'
-
-
-def _said(text: str) -> str:
-    return f'<p role="status" style="line-height:1.4;white-space:normal">{escape(text)}</p>'
-
-
-def _png(figure: Figure) -> str:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=100)
-    return base64.b64encode(buffer.getvalue()).decode()

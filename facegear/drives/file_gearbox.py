@@ -11,9 +11,9 @@ from facegear.geometry.drive import Drive
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.heavy_shafts import HeavyShafts
+from facegear.mechanics.properties import Material
 from facegear.mechanics.tooth_damage import DamagedTooth
 from facegear.mechanics.torsional import Gearbox, Torsional
-from facegear.support.parameters import Material
 
 
 def gearbox_models(

@@ -14,9 +14,9 @@ from facegear.drives.refusals import built
 from facegear.geometry.drive import Drive
 from facegear.geometry.phases import touching_angle
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.properties import Material
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.two_gears import Role, fitting_angles
-from facegear.support.parameters import Material
 
 
 def faces_of_pinions(teeth: dict[str, Any] | None, pinions: int) -> Sequence[int]:

@@ -13,8 +13,8 @@ from facegear.geometry.drive import Drive
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.sharing import RULES, shared_load
-from facegear.support.parameters import MeshLoad
 
 CENTROID, COMPLIANCE = "centroid", "compliance"
 SHARING = (CENTROID, *RULES, COMPLIANCE)

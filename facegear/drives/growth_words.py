@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from facegear.drives.findings import TORSION
 from facegear.drives.intervals import Intervals, in_rpm
-from facegear.drives.tolerances import Tolerances, WorstCase
+from facegear.drives.tolerances import Tolerances
+from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
 from facegear.support.parameters import rpm
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import io
 from dataclasses import replace
 from html import escape
 from typing import Any
@@ -14,11 +12,12 @@ from matplotlib.figure import Figure
 
 from facegear.drives.play import Motion, motion_arrays, motion_from_rest
 from facegear.floquet.models import replace_parameter, value_of
-from facegear.floquet.periodic import named
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import ProportionalGearbox
+from facegear.plotting.interactive import image
 from facegear.plotting.motions import motions
 from facegear.plotting.style import FAINT, INK, VERMILION, panels, styled
+from facegear.support.kinds import named
 from facegear.support.parameters import finite, rad_per_s
 
 _POINTS = 401
@@ -115,7 +114,7 @@ class MotionExplorer:
             return
         self._say(told(motion, speed))
         figure = motion_figure(play, motion)
-        self.picture.value = "" if figure is None else _image(figure, told(motion, speed))
+        self.picture.value = "" if figure is None else image(figure, told(motion, speed))
 
     def _say(self, words: str) -> None:
         self.report.value = f'<p style="color:{INK};line-height:1.4;white-space:normal">{escape(words)}</p>'
@@ -137,10 +136,3 @@ def _slider(label: str, lowest: float, highest: float, step: float, value: float
         layout=ipywidgets.Layout(width="min(36rem, 98%)"),
         style={"description_width": "15rem"},
     )
-
-
-def _image(figure: Figure, alt: str) -> str:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=100)
-    drawn = base64.b64encode(buffer.getvalue()).decode()
-    return f'<img src="data:image/png;base64,{drawn}" alt="{escape(alt)}" style="max-width:100%">'

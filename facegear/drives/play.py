@@ -16,10 +16,10 @@ import xarray as xr
 
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.orbits import Orbit, periodic_orbit
-from facegear.floquet.periodic import named
 from facegear.floquet.transients import settled
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.backlash import Backlash
+from facegear.support.kinds import named
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import integer_at_least, rpm
 from facegear.support.types import FloatArray

@@ -1,14 +1,21 @@
 """The engine: stability of linear systems with periodic coefficients (chapter 2). It knows nothing of gears.
 
-`periodic` has the systems and their rank-one loads, `piecewise` and `series` the series they are made of;
-`multipliers` the transition matrix by the methods of `collocation`, `stepping`, `radau` and `taylor`, `columns`,
-`multiplier_curves` and `sheets` the same along a parameter, along speed and along both; `eigenvalues` are those of
-many matrices, in `lockstep` where Numba is installed (`compiled`), as `lockstep_exponentials` and `lockstep_taylor`
-have steps of small systems; `modes` has natural motions, `labels` names what is unstable; `modal`, `averaging`, `hsu`
-are the approximations, `hill` the harmonic balance of motions. `response` has the steady motion that forces cause,
-along the panels of `motion`. Systems whose loads act in contact only are those of `clearance`: `orbits` has their
-periodic motions, on the panels of `contact_panels`, `continuation` the families of these along a parameter,
-`transients` where other motions end, compiled in `lockstep_transients` where Numba is installed.
+Systems: `periodic` has the equations, `loads` what varies in them, `piecewise` and `series` the series they are made
+of, `models` what makes a system at each speed, `modified_models` such as are made of others.
+
+Multipliers: `multipliers` has the transition matrix by one of four methods. `collocation` takes the modes of
+`free_modes`, the panels of `gauss_panels` and the equations of `contact_forces`; the others are `stepping`, `radau` and
+`taylor`. `columns`, `multiplier_curves` and `sheets` have it along a parameter, along speed and along both.
+`eigenvalues` and `eigenvectors` are those of many matrices, in `lockstep` and `lockstep_vectors` where Numba is
+installed (`compiled`), as `lockstep_exponentials` and `lockstep_taylor` have steps of small systems.
+
+Modes and approximations: `modes` has natural motions, `labels` names what is unstable; `modal` is the standard form for
+`averaging` and `hsu`, along speed `band_speeds`, and `hill` has the harmonic balance.
+
+Motions: `response` has the steady one that forces cause, along the panels of `motion`. Systems whose loads act in
+contact only are those of `clearance`: `orbits` has their periodic motions, on the panels of `contact_panels`,
+`continuation` follows the `branches` of these along a parameter, by steps of `arc_length`, `transients` has where other
+motions end, compiled in `lockstep_transients` where Numba is installed.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*

@@ -1,7 +1,7 @@
 """Periodic systems whose loads act in contact only: play between teeth, stops, impacts on springs.
 
 A load of side +1 presses while its displacement u = φᵀq − e exceeds a clearance b, one of side −1 while u < −b, and
-then as the spring and damper of :class:`facegear.floquet.periodic.ContactLoad` on what is beyond the clearance,
+then as the spring and damper of :class:`facegear.floquet.loads.ContactLoad` on what is beyond the clearance,
 
     force = w (k (u ∓ b) + c u̇)   in contact,   0 else,
 
@@ -20,8 +20,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, named, require_system
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
+from facegear.support.kinds import named
 from facegear.support.parameters import integer_at_least, integer_within, keep, nonnegative
 from facegear.support.types import FloatArray
 

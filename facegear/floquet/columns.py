@@ -301,8 +301,15 @@ def resolved(evaluate: Evaluate, points: FloatArray, tolerance: float, degree: i
     if not resolvable(points) or degree > points.size - 2:
         return None
     low, high = float(points.min()), float(points.max())
-    series = ChebyshevSeries.resolved(evaluate, low, high, degree, points.size - 2, tolerance)
-    return series if series.tail <= tolerance and of_one_size(series.values) else None
+    series = ChebyshevSeries.sampled(evaluate, low, high, degree)
+    # Matrices too different for a series at these points are so at the more of a higher degree.
+    while of_one_size(series.values):
+        if series.tail <= tolerance:
+            return series
+        if 2 * series.degree > points.size - 2:
+            break
+        series = series.refined(evaluate)
+    return None
 
 
 def resolvable(points: FloatArray) -> bool:

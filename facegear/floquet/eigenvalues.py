@@ -16,7 +16,7 @@ from facegear.floquet.compiled import where_compiled
 from facegear.support.types import ComplexArray, FloatArray
 
 # Fewer matrices than this are not worth another library.
-_FEWEST = 32
+_FEWEST = 8
 # Largest difference of the sum of all eigenvalues, or of their squares, from the trace, relative to the norm.
 _TRACE_CHECK = 1e-12
 # Squares of entries beyond these bounds leave the range of numbers.

@@ -71,8 +71,6 @@ def change(matrices: FloatArray, slopes: FloatArray, least: float = 0.0) -> Chan
     >>> found.values.tolist(), found.direct.round(9).tolist()
     ([[1j]], [[[3j]]])
     """
-    if not np.isfinite(matrices).all():
-        raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
     values, right, left = _vectors(matrices, least)
     # (Re w, Im w) S (Re v, Im v) in real numbers: four products a pair of vectors.
     parts = _products((_rows(left) @ slopes).reshape(left.shape), right)
@@ -80,8 +78,52 @@ def change(matrices: FloatArray, slopes: FloatArray, least: float = 0.0) -> Chan
     return Change(values, direct, crossed)
 
 
+class Critical(NamedTuple):
+    """Largest eigenvalue of each matrix, of a conjugate pair the one above the real axis, and its vectors.
+
+    Attributes
+    ----------
+    values : ndarray of complex, shape (V,)
+    right, left : ndarray of complex, shape (V, d)
+        v and w with w v = 1.
+    """
+
+    values: ComplexArray
+    right: ComplexArray
+    left: ComplexArray
+
+
+def critical(matrices: FloatArray) -> Critical:
+    """Find the largest eigenvalue of each of many matrices, and its eigenvectors.
+
+    Parameters
+    ----------
+    matrices : array, shape (V, d, d)
+
+    Returns
+    -------
+    Critical
+
+    Raises
+    ------
+    ArithmeticError
+        If an entry is not finite.
+
+    Examples
+    --------
+    >>> found = critical(np.array([[[0.0, 2.0], [-2.0, 0.0]], [[1.0, 0.0], [0.0, -3.0]]]))
+    >>> found.values.round(9).tolist(), (found.left * found.right).sum(axis=1).real.round(9).tolist()
+    ([2j, (-3+0j)], [1.0, 1.0])
+    """
+    values, right, left = _vectors(matrices, np.inf)
+    vectors = (part[:, 0, 0] + 1j * part[:, 1, 0] for part in (right, left))
+    return Critical(values[:, 0], *vectors)
+
+
 def _vectors(matrices: FloatArray, least: float) -> tuple[ComplexArray, FloatArray, FloatArray]:
     """Values (V, m), right and left vectors, their real and imaginary parts (V, 2, m, d)."""
+    if not np.isfinite(matrices).all():
+        raise ArithmeticError("transition matrix is not finite: the motion grows beyond double precision")
     lockstep = _lockstep() if len(matrices) >= _FEWEST else None
     if lockstep is None:
         return _by_lapack(matrices, least)

@@ -13,19 +13,15 @@ needs two harmonics in a row, as the second one of Mathieu's equation, is not th
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
-import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.averaging import (
     REACH,
     ResonanceBlock,
-    averaged_block,
     congruent_block,
     coupled,
     driving_pair,
@@ -33,15 +29,14 @@ from facegear.floquet.averaging import (
     unstable_intervals,
 )
 from facegear.floquet.modal import ModalExpansion, modal_expansion
-from facegear.floquet.models import Model
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.support.parameters import ascending, integer_at_least, nonnegative
-from facegear.support.threads import one_thread
+from facegear.support.parameters import integer_at_least, nonnegative
 from facegear.support.types import FloatArray
 
 Kind = Literal["sum", "difference"]
 
-_ROUNDING = 1e-11  # Relative size below which a rate is rounding.
+#: Relative size below which a rate is rounding.
+ROUNDING = 1e-11
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,32 +91,6 @@ class ResonanceBand:
         return self.block.growth_rate(frequency)
 
 
-@dataclass(frozen=True, eq=False)
-class SpeedBand:
-    """Interval of speed where a combination of natural frequencies grows.
-
-    Attributes
-    ----------
-    lower, upper : float
-        Borders, in the unit of the speeds asked for; 0 and infinite as in :class:`ResonanceBand`.
-    centre : float
-        Speed at which sω equals the combination of natural frequencies.
-    band : ResonanceBand
-        The band of the parametric frequency with all matrices taken at a crossing of sω with its pair, or with
-        another pair of the same block.
-    """
-
-    lower: float
-    upper: float
-    centre: float
-    band: ResonanceBand
-
-    @property
-    def label(self) -> str:
-        """Label of the band."""
-        return self.band.label
-
-
 def resonance_bands(
     system: PeriodicSystem | ModalExpansion, *, order: int = 6, reach: float = REACH
 ) -> tuple[ResonanceBand, ...]:
@@ -153,9 +122,9 @@ def resonance_bands(
     Notes
     -----
     Matrices are taken as they are at the system's period, as functions of the fraction of the period; the
-    parametric frequency alone varies. Where they change with speed use :func:`band_speeds`. Differences of
-    frequencies within three times their coupling are left out: a modulation as slow as the growth it causes
-    is not averaged.
+    parametric frequency alone varies. Where they change with speed use
+    :func:`facegear.floquet.band_speeds.band_speeds`. Differences of frequencies within three times their coupling are
+    left out: a modulation as slow as the growth it causes is not averaged.
 
     Examples
     --------
@@ -167,7 +136,7 @@ def resonance_bands(
     781 to 784 rad/s, up to 0.89 1/s
     """
     expansion = _expanded(system, order, reach)
-    _refuse_unstable_mean(expansion)
+    refuse_unstable_mean(expansion)
     bands: list[ResonanceBand] = []
     seen: set[tuple[tuple[int, int], ...]] = set()
     for a, b, s, centre in _combinations(expansion, order):
@@ -175,88 +144,18 @@ def resonance_bands(
         key = signature(block)
         if key not in seen:
             seen.add(key)
-            bands += _block_bands(expansion, block, centre)
+            bands += block_bands(expansion, block, centre)
     # The larger of two blocks that find the same band has it better.
     bands.sort(key=lambda band: -len(band.block.members))
-    return tuple(sorted(_without_repeats(bands), key=lambda band: (band.centre, band.label)))
+    return tuple(sorted(without_repeats(bands), key=lambda band: (band.centre, band.label)))
 
 
-@one_thread()
-def band_speeds(
-    model: Model,
-    speeds: tuple[float, float],
-    *,
-    order: int = 6,
-    reach: float = REACH,
-    points: int = 41,
-    expand: Callable[[PeriodicSystem, int], ModalExpansion] = modal_expansion,
-) -> tuple[SpeedBand, ...]:
-    """Intervals of speed in which a model whose matrices change with speed is unstable to first order.
-
-    Parameters
-    ----------
-    model : Model
-        Its system at each speed [rad/s].
-    speeds : tuple of float
-        Lowest and highest speed at which sω may equal a combination of natural frequencies; borders may lie
-        outside.
-    order : int
-        Highest s.
-    reach : float
-        As for :func:`resonance_bands`.
-    points : int
-        Speeds at which combinations are first compared with sω, at least 2. A combination is missed only if it
-        crosses sω twice between two of them.
-    expand : callable
-        Expansion about the mean: :func:`facegear.floquet.modal.modal_expansion`, or for the dissertation's own
-        approximation ``lambda system, order: standard_form(system, order).expansion()``.
-
-    Returns
-    -------
-    tuple of SpeedBand
-        Ascending by centre.
-
-    Raises
-    ------
-    ValueError
-        If the range is empty or not positive, the number of oscillating modes changes inside it, or the mean
-        system is unstable at a crossing.
-    """
-    order = integer_at_least("order", order, 1)
-    reach = nonnegative("reach", reach)
-    low, high = ascending("speeds", speeds, "rad/s")
-    grid = np.linspace(low, high, integer_at_least("points", points, 2))
-    sampled = [expand(model.system(float(speed)), 1) for speed in grid]
-    sizes = {len(mean.frequencies) for mean in sampled}
-    if len(sizes) > 1:
-        raise ValueError(
-            f"speeds = {speeds!r}: the number of oscillating modes changes in this range (between {min(sizes)} and "
-            f"{max(sizes)}); give ranges in which it stays"
-        )
-    signed = np.array([mean.signed_frequencies for mean in sampled])
-    parametric = np.array([mean.parametric_frequency for mean in sampled])
-
-    found: list[tuple[bool, SpeedBand]] = []
-    for a, b in _pairs(signed.shape[1] // 2):
-        for s in range(1, order + 1):
-            detuning = s * parametric - (signed[:, a] - signed[:, b])
-            for i in np.flatnonzero(np.sign(detuning[:-1]) * np.sign(detuning[1:]) <= 0):
-                if detuning[i + 1] == 0 and i + 2 < len(grid):
-                    continue  # The next interval begins with this root.
-                bracket = ((grid[i], detuning[i]), (grid[i + 1], detuning[i + 1]))
-                found += _bands_near(model, expand, bracket, (a, b, s), order, reach)
-    # A band is best known from the crossing of its own pair, then from the larger block.
-    found.sort(key=lambda item: (not item[0], -len(item[1].band.block.members)))
-    bands = _without_repeats([band for _, band in found])
-    return tuple(sorted(bands, key=lambda band: (band.centre, band.label)))
+BandT = TypeVar("BandT", bound=Any)
 
 
-_Band = TypeVar("_Band", ResonanceBand, SpeedBand)
-
-
-def _without_repeats(bands: list[_Band]) -> list[_Band]:
-    """Keep the first of bands that overlap and have the same label."""
-    kept: list[_Band] = []
+def without_repeats(bands: list[BandT]) -> list[BandT]:
+    """Keep the first of bands, each with `lower`, `upper` and `label`, that overlap and have the same label."""
+    kept: list[BandT] = []
     for band in bands:
         if not any(
             band.label == other.label and band.lower <= other.upper and other.lower <= band.upper
@@ -264,80 +163,6 @@ def _without_repeats(bands: list[_Band]) -> list[_Band]:
         ):
             kept.append(band)
     return kept
-
-
-def _bands_near(
-    model: Model,
-    expand: Callable[[PeriodicSystem, int], ModalExpansion],
-    bracket: tuple[tuple[float, float], tuple[float, float]],
-    pair: tuple[int, int, int],
-    order: int,
-    reach: float,
-) -> Iterator[tuple[bool, SpeedBand]]:
-    """Bands of the block around one crossing, and whether it is the crossing of the pair that drives them.
-
-    Borders are followed with the matrices of each speed.
-    """
-    a, b, s = pair
-
-    def residual(speed: float) -> float:
-        mean = expand(model.system(speed), 1)
-        return float(
-            s * mean.parametric_frequency - (mean.signed_frequencies[a] - mean.signed_frequencies[b])
-        )
-
-    # The chord is good enough to see whether there is anything to be found.
-    (low, at_low), (high, at_high) = bracket
-    crossing = low if at_low == at_high else low - at_low * (high - low) / (at_high - at_low)
-    expansion = expand(model.system(crossing), order)
-    if not coupled(expansion, a, b, s):
-        return
-    _refuse_unstable_mean(expansion)
-    if congruent_block(expansion, a, b, s, expansion.parametric_frequency, reach).growth_bound <= 0:
-        return
-    if at_low * at_high < 0:
-        crossing = float(brentq(residual, low, high, xtol=1e-10 * high))
-        expansion = expand(model.system(crossing), order)
-    block = congruent_block(expansion, a, b, s, expansion.parametric_frequency, reach)
-
-    def growth(speed: float) -> float:
-        here = expand(model.system(speed), order)
-        return float(averaged_block(here, block.members, block.shifts).growth_rate(here.parametric_frequency))
-
-    level = _ROUNDING * float(np.abs(block.coupling).max())
-    per_speed = crossing / expansion.parametric_frequency
-    for band in _block_bands(expansion, block, expansion.parametric_frequency):
-        # The frozen band scaled to speed is where the true one begins to be looked for.
-        peak = band.peak * per_speed
-        if growth(peak) <= level and band.lower > 0 and math.isfinite(band.upper):
-            wide = 2 * (band.upper - band.lower) * per_speed
-            bounds = (max(peak - wide, peak / 2), peak + wide)
-            peak = float(minimize_scalar(lambda v: -growth(v), bounds=bounds, method="bounded").x)
-        if growth(peak) <= level:
-            continue
-        borders = []
-        for frozen in (band.lower, band.upper):
-            if frozen in (0.0, math.inf):
-                borders.append(frozen)
-                continue
-            step = (frozen - band.peak) * per_speed
-            inside, outside = peak, peak + step * 1.02
-            for _ in range(12):
-                if outside <= 0 or growth(outside) <= level:
-                    break
-                inside, outside = outside, outside + step
-            else:
-                raise ArithmeticError(
-                    f"the band {band.label} near speed {crossing:.6g} has no border to be found"
-                )
-            found = (
-                brentq(lambda v: growth(v) - level, inside, outside, xtol=1e-9 * crossing)
-                if outside > 0
-                else 0
-            )
-            borders.append(float(found))
-        centre = band.centre * per_speed
-        yield abs(centre - crossing) <= 1e-9 * crossing, SpeedBand(borders[0], borders[1], centre, band)
 
 
 def _expanded(system: PeriodicSystem | ModalExpansion, order: int, reach: float) -> ModalExpansion:
@@ -352,16 +177,23 @@ def _expanded(system: PeriodicSystem | ModalExpansion, order: int, reach: float)
     return system
 
 
-def _refuse_unstable_mean(expansion: ModalExpansion) -> None:
-    if expansion.mean_growth_rate > _ROUNDING * expansion.frequencies[-1]:
+def refuse_unstable_mean(expansion: ModalExpansion) -> None:
+    """Refuse a system whose mean is unstable by itself.
+
+    Raises
+    ------
+    ValueError
+        Naming its growth rate.
+    """
+    if expansion.mean_growth_rate > ROUNDING * expansion.frequencies[-1]:
         raise ValueError(
             f"system: its mean is unstable by itself (growth rate {expansion.mean_growth_rate:.6g} 1/s), so that there "
             "are no bands of parametric resonance to bound"
         )
 
 
-def _pairs(modes: int) -> Iterator[tuple[int, int]]:
-    """Signed eigenvalues (a, b) of all sums ω_k + ω_j and differences ω_j − ω_k = Ω_a − Ω_b."""
+def pairs(modes: int) -> Iterator[tuple[int, int]]:
+    """Yield the signed eigenvalues (a, b) of all sums ω_k + ω_j and differences ω_j − ω_k = Ω_a − Ω_b."""
     for j in range(modes):
         for k in range(j + 1):
             yield j, modes + k
@@ -372,7 +204,7 @@ def _pairs(modes: int) -> Iterator[tuple[int, int]]:
 def _combinations(expansion: ModalExpansion, order: int) -> Iterator[tuple[int, int, int, float]]:
     """All coupled pairs with their order and centre frequency [rad/s]."""
     signed = expansion.signed_frequencies
-    for a, b in _pairs(len(expansion.frequencies)):
+    for a, b in pairs(len(expansion.frequencies)):
         distance = float(signed[a] - signed[b])
         for s in range(1, order + 1):
             slow = distance <= REACH * expansion.strength[expansion.order + s, a, b]
@@ -380,10 +212,10 @@ def _combinations(expansion: ModalExpansion, order: int) -> Iterator[tuple[int, 
                 yield a, b, s, distance / s
 
 
-def _block_bands(
+def block_bands(
     expansion: ModalExpansion, block: ResonanceBlock, frequency: float
 ) -> Iterator[ResonanceBand]:
-    """Bands of one block, each named after the pair that drives it."""
+    """Yield the bands of one block, each named after the pair that drives it."""
     modes = tuple(sorted({member % block.modes + 1 for member in block.members}))
     intervals = unstable_intervals(block, frequency)
     for lower, upper, peak in intervals:

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.floquet.collocation import UnsuitableSystemError, transition_matrices_to
+from facegear.floquet.collocation import transition_matrices_to
+from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.multipliers import Method, transition_matrix

@@ -20,13 +20,12 @@ import numpy as np
 from numba import config, njit
 from numpy.typing import NDArray
 
+from facegear.floquet.compiled import LANES
 from facegear.support.types import FloatArray
 
 if config.DISABLE_JIT:
     raise ImportError("NUMBA_DISABLE_JIT is set: what is not compiled is far slower than NumPy")
 
-#: Matrices that go together.
-LANES = 32
 _N = np.uint64(LANES)
 _2N, _3N, _4N = 2 * _N, 3 * _N, 4 * _N
 _ONE = np.uint64(1)

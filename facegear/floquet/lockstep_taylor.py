@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.floquet.lockstep import LANES, inner, outer
+from facegear.floquet.compiled import LANES
+from facegear.floquet.lockstep import inner, outer
 from facegear.support.types import FloatArray
 
 _N = np.uint64(LANES)

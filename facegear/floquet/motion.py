@@ -13,7 +13,8 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from facegear.floquet.periodic import PeriodicSystem, weighted_shape
+from facegear.floquet.loads import weighted_shape
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import Side
 from facegear.support.types import FloatArray
 

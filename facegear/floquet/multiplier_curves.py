@@ -15,6 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from facegear.floquet.compiled import LANES
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import (
@@ -42,7 +43,7 @@ _DEAD = 30.0
 # Slowness of systems computed together differs by this factor at most: they share panels or sub-intervals.
 _TOGETHER = 1.4
 # Matrices of which eigenvalues are found at once, and the sum of the third powers of their sizes.
-_MOST_AT_ONCE, _CUBES_AT_ONCE = 512, 100_000_000
+_MOST_AT_ONCE, _CUBES_AT_ONCE = 512, 320_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -262,14 +263,15 @@ class MultiplierCurve:
     def spectral_radii(self, speeds: FloatArray) -> FloatArray:
         """max|λ| at speeds (m,)."""
         speeds = np.atleast_1d(speeds)
-        parts = np.array_split(speeds, -(-speeds.size // self.batch)) if speeds.size else [speeds]
+        parts = np.split(speeds, np.arange(self.batch, speeds.size, self.batch))
         return np.concatenate([spectral_radii(self.transition_matrices(part)) for part in parts])
 
     @property
     def batch(self) -> int:
         """Matrices worked on at once: what takes a second or so, for no interruption is heard meanwhile."""
         size = self.windows[0].coefficients.shape[-1]
-        return int(max(1, min(_MOST_AT_ONCE, _CUBES_AT_ONCE // size**3)))
+        most = max(1, min(_MOST_AT_ONCE, _CUBES_AT_ONCE // size**3))
+        return int(most - most % LANES if most > LANES else most)
 
 
 def _matrices(systems: list[PeriodicSystem], method: Method) -> FloatArray:

@@ -25,10 +25,12 @@ from facegear.floquet.contact_panels import (
     linearised,
     struck,
 )
-from facegear.floquet.periodic import PeriodicSystem, StateJump, named
+from facegear.floquet.loads import StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, Side
 from facegear.floquet.response import SteadyResponse
 from facegear.floquet.transients import contacts_along
+from facegear.support.kinds import named, require_kind
 from facegear.support.parameters import finite_array, integer_at_least
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -229,7 +231,7 @@ def periodic_orbit(
     --------
     A mass of 1 kg between stops of 4 N/m at ±0.5 m, pushed with 2 N.
 
-    >>> from facegear.floquet.periodic import ContactLoad
+    >>> from facegear.floquet.loads import ContactLoad
     >>> spring, push = ContactLoad(PiecewiseChebyshev.constant([1.0]), 4.0), PiecewiseChebyshev.constant([2.0])
     >>> system = PeriodicSystem([[1.0]], [[0.1]], [[0.0]], (spring, spring), 2.0, force=push)
     >>> orbit = periodic_orbit(ClearanceSystem(system, sides=(1, -1), clearances=(0.5, 0.5)))
@@ -247,8 +249,7 @@ def periodic_orbit(
 
 def require_clearances(system: object) -> None:
     """Refuse what is no system with clearances."""
-    if not isinstance(system, ClearanceSystem):
-        raise TypeError(f"system must be a ClearanceSystem, got {named(system)}")
+    require_kind("system", system, ClearanceSystem)
 
 
 def _first_pattern(whole: ClearanceSystem, count: int, guess: Any, panels: Panels) -> Pattern:

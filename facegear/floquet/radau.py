@@ -22,7 +22,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi
 
-from facegear.floquet.collocation import within_reach
+from facegear.floquet.gauss_panels import within_reach
 from facegear.floquet.motion import MotionPanels, known_forces
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import SAME_INSTANT, merge_breakpoints
@@ -33,7 +33,7 @@ from facegear.support.types import FloatArray
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB.
 _STACK_ENTRIES = 1_000_000
 # Angle of a panel to begin with [rad].
-_PANEL_ANGLE = 8.0
+_PANEL_ANGLE = 11.0
 # Rounds of halving after which a family is given up.
 _MOST_ROUNDS = 24
 # Legendre coefficients that tell the size of the accelerations on a panel, and how well they are resolved.

@@ -23,6 +23,7 @@ from facegear.floquet.piecewise import PiecewiseChebyshev, Side
 from facegear.floquet.radau import Radau
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import finite_array, integer_at_least
+from facegear.support.quadrature import gauss_legendre, legendre_from_values
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest part of the last coefficients of the motion along a panel, at which the panel is halved.
@@ -141,8 +142,8 @@ class SteadyResponse:
         """Complex amplitudes X_s of the state, X = Re Σ X_s e^{isωt}, s = 0 ... order, shape (order + 1, 2n)."""
         s = np.arange(integer_at_least("order", order, 0) + 1)[:, np.newaxis]
         lengths, degrees = self.state.lengths, np.arange(self.state.degree + 1)
-        nodes, weights = legendre.leggauss(degrees.size)
-        series = ((degrees + 0.5)[:, np.newaxis] * legendre.legvander(nodes, degrees[-1]).T * weights) @ (
+        nodes, _ = gauss_legendre(degrees.size)
+        series = legendre_from_values(degrees.size) @ (
             chebyshev.chebvander(nodes, degrees[-1]) @ self.state.coefficients
         )
         # The integral of P_d(z) e^{−iaz} over [−1, 1] is 2 (−i)^d j_d(a), for any order.
@@ -181,7 +182,7 @@ class SteadyResponse:
 
     @cached_property
     def _rule(self) -> tuple[FloatArray, FloatArray]:
-        x, weights = legendre.leggauss(2 * self.state.degree + 2)
+        x, weights = gauss_legendre(2 * self.state.degree + 2)
         lengths = self.state.lengths[:, np.newaxis]
         instants = self.state.breakpoints[:, np.newaxis] + lengths * (1.0 + x) / 2.0
         return instants.ravel(), (lengths * weights / 2.0).ravel()
@@ -202,11 +203,8 @@ def _distinct(lengths: FloatArray) -> tuple[FloatArray, NDArray[np.intp]]:
 @lru_cache(maxsize=8)
 def _finer(count: int) -> FloatArray:
     """Matrix from values at Gauss nodes of a panel to those at eight times as many places, its ends among them."""
-    nodes, weights = legendre.leggauss(count)
-    degrees = np.arange(count)
     places = -np.cos(np.linspace(0.0, np.pi, 8 * count + 1))
-    to_series = (degrees + 0.5)[:, np.newaxis] * legendre.legvander(nodes, count - 1).T * weights
-    return np.asarray(legendre.legvander(places, count - 1) @ to_series, dtype=float)
+    return np.asarray(legendre.legvander(places, count - 1) @ legendre_from_values(count), dtype=float)
 
 
 def steady_response(

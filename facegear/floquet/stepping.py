@@ -11,7 +11,7 @@ import numpy as np
 from facegear.floquet.collocation import chain
 from facegear.floquet.compiled import where_compiled
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, have_one_course, require_system
-from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev, Side
+from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev, Side, same_function
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest norm of an exponent before it is squared.
@@ -22,6 +22,8 @@ _STACK_ENTRIES = 500_000
 # Fewer matrices than this are not worth another library, and larger ones keep BLAS busy.
 _FEWEST = 32
 _COMPILED_SIZES = range(2, 13, 2)
+# A call of BLAS takes longer than the product of matrices up to this size.
+_TINY = 5
 
 StateMatrices = Callable[[FloatArray], FloatArray]
 # Starts and lengths of sub-intervals (m,) and the state matrices at fractions, to the steps (V, m, 2n, 2n).
@@ -256,13 +258,13 @@ class Family:
         n = self.size
         mass, damping, stiffness = matrices
         inverse = np.linalg.inv(mass)
-        scale, back = self.scale[n:, n:], self.inverse_scale[n:, n:]
+        scale, back = (np.asarray(x[n:, n:], dtype=float) for x in (self.scale, self.inverse_scale))
         left = -self.periods[:, None, None, None] * (scale @ inverse)
-        ratio = self.scale[0, 0] / self.scale[n, n]
+        ratio = float(self.scale[0, 0] / self.scale[n, n])
         state = np.zeros((len(self.systems), instants, 2 * n, 2 * n))
         state[..., :n, n:] = (self.periods * ratio)[:, None, None, None] * np.eye(n)
-        state[..., n:, :n] = left @ stiffness @ (back / ratio)
-        state[..., n:, n:] = left @ damping @ back
+        state[..., n:, :n] = _between(left, stiffness, back / ratio)
+        state[..., n:, n:] = _between(left, damping, back)
         return state
 
     def product(self, edges: FloatArray, method: Steps) -> FloatArray:
@@ -329,6 +331,17 @@ class Family:
         ]
 
 
+def _between(left: FloatArray, matrices: FloatArray, right: FloatArray) -> FloatArray:
+    """Products left (V, m or 1, n, n) · matrices (V, m or 1, n, n) · right (n, n)."""
+    systems, instants, n, _ = matrices.shape
+    products = (matrices.reshape(systems, instants * n, n) @ right).reshape(matrices.shape)
+    if left.shape[1] > 1 or n > _TINY:
+        return np.asarray(left @ products)
+    # What is the same at all instants takes their rows for those of one large matrix: several times faster.
+    rows = products.swapaxes(-1, -2).reshape(systems, instants * n, n) @ left[:, 0].swapaxes(-1, -2)
+    return np.asarray(rows.reshape(matrices.shape).swapaxes(-1, -2))
+
+
 def _scaling(mass: FloatArray, frequency: float) -> FloatArray:
     """S of the state S X = (ω Lᵀq, Lᵀq̇), M = L Lᵀ: both halves have the size of a root energy, as q and q̇ do not."""
     factor = np.linalg.cholesky(mass).T
@@ -344,7 +357,8 @@ def _values(
 ) -> FloatArray:
     """Values of one periodic function of each load, evaluated once if they share it: (V or 1, m, components)."""
     functions = [part(load) for load in loads]
-    if all(function is functions[0] for function in functions):
+    # A model may build them anew for each speed.
+    if all(same_function(function, functions[0]) for function in functions):
         functions = functions[:1]
     one = np.ones((fraction.size, 1))
     return np.stack([one if function is None else function(fraction, side) for function in functions])

@@ -28,7 +28,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from facegear.floquet.collocation import UnsuitableSystemError
-from facegear.floquet.compiled import where_compiled
+from facegear.floquet.compiled import LANES, where_compiled
 from facegear.floquet.piecewise import same_function
 from facegear.floquet.stepping import Family, aligned_edges
 from facegear.support.parameters import keep, within
@@ -43,9 +43,9 @@ _MOST_TERMS, _MOST_HALVINGS = 48, 4
 # Integral of the norm over a period beyond which exponentials, which are squared, take less time.
 _MOST_EXPONENT = 6000.0
 # Cells go together if their norms are at least this part of the largest among them, or if they are so few.
-_TOGETHER, _LANES = 0.8, 32
+_TOGETHER = 0.8
 # Cells fewer than these are not worth another library.
-_FEWEST = 5
+_FEWEST = 2
 
 
 class Members(NamedTuple):
@@ -200,7 +200,7 @@ def _groups(norms: FloatArray) -> Iterator[NDArray[np.intp]]:
     """Numbers of cells that may have common steps."""
     order = np.argsort(-norms)
     while order.size:
-        count = max(_LANES, int(np.count_nonzero(norms[order] >= _TOGETHER * norms[order[0]])))
+        count = max(LANES, int(np.count_nonzero(norms[order] >= _TOGETHER * norms[order[0]])))
         yield order[:count]
         order = order[count:]
 

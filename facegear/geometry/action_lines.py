@@ -20,7 +20,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.geometry.contact_lines import ContactRegion
 from facegear.geometry.drive import Drive
 from facegear.geometry.misalignment import Misalignment
 from facegear.geometry.vectors import Vector, cross, dot, rotated
@@ -79,14 +78,6 @@ class ActionLines:
     def _root(self, change: _Change) -> float:
         return root(lambda q: float(self.residual(q)), change.first, change.last)
 
-    @property
-    def _shaper(self) -> Drive:
-        return self.drive.generating
-
-    @property
-    def _region(self) -> ContactRegion:
-        return self._shaper.contact_region
-
     @cached_property
     def _gear_axis(self) -> Vector:
         supplement = math.pi - self.drive.shaft_angle
@@ -120,8 +111,8 @@ class ActionLines:
         These are measured along the line from its foot on the pinion's base circle [m]; a roll angle θs adds r_bs θs.
         """
         turn = self.turn(q)
-        base = self._shaper.base_radius
-        made_at = (base * np.sin(q), -base * np.cos(q), self._region.position(np.asarray(q)))
+        base = self.drive.generating.base_radius
+        made_at = (base * np.sin(q), -base * np.cos(q), self.drive.contact_region.position(np.asarray(q)))
         (x, y, z), normal = (rotated(vector, self._gear_axis, turn) for vector in (made_at, _normal(q)))
         at, axis = self._pinion_axis
         away = (x - at[0], y - at[1], z - at[2])
@@ -133,7 +124,7 @@ class ActionLines:
 
     def offset(self, q: ArrayLike) -> FloatArray:
         """Gap of the slice at q but for a constant: place of the gear's tangent plane less that of the pinion's [m]."""
-        shaper = self._shaper
+        shaper = self.drive.generating
         # At one rotation of the gear, θs = q + ψ/m but for a constant; θ1 is the direction of n about the pinion.
         gear = self.at(q)[2] + shaper.base_radius * (np.asarray(q) + self.turn(q) / shaper.speed_ratio)
         return np.asarray(gear - self.drive.base_radius * self.direction(q), dtype=float)
@@ -147,19 +138,19 @@ class ActionLines:
     def own_roll(self, q: ArrayLike, roll: ArrayLike) -> FloatArray:
         """Roll angle of the pinion's involute next to the point (q, θs) of the gear's flank [rad]."""
         return np.asarray(
-            (self.at(q)[2] + self._shaper.base_radius * np.asarray(roll)) / self.drive.base_radius
+            (self.at(q)[2] + self.drive.generating.base_radius * np.asarray(roll)) / self.drive.base_radius
         )
 
     def curvature_tensor(self, q: float, roll: float) -> FloatArray:
         """Second derivatives of the gap at (q, θs) along the pinion's profile and its axis, shape (2, 2) [1/m]."""
-        base = self._shaper.base_radius
+        base = self.drive.generating.base_radius
         normal, _, start = self.at(q)
         axis = np.array(self._pinion_axis[1])
         profile = np.cross(axis, normal)
         shaper_axis = np.array(rotated((0.0, 0.0, 1.0), self._gear_axis, self.turn(q)))
         shaper_profile = np.cross(shaper_axis, normal)
         # The shaper touches the gear along a line at β to its axis, and is flatter than the gear across it by κ.
-        m, supplement = self._shaper.speed_ratio, math.pi - self.drive.shaft_angle
+        m, supplement = self.drive.generating.speed_ratio, math.pi - self.drive.shaft_angle
         p, k, t = m * math.sin(supplement), 1.0 - m * math.cos(supplement), math.tan(q)
         rest = k * t * ((1.0 - k) * roll + k * t) - (p * math.cos(q)) ** 2 * roll * (roll - t)
         kappa = ((k * t / roll) ** 2 + (p * math.cos(q)) ** 2) * roll / (base * rest)

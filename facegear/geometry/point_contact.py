@@ -1,29 +1,25 @@
 """Contact at a point: a face gear cut by a shaper with more teeth than the pinion, as long as nothing is loaded.
 
-A normal of the flank that touches the pinion's base circle is a line of action, whatever the roll angle
-(:mod:`facegear.geometry.action_lines`): the root of A(q) = 0 holds all through the mesh; the path of contact is a
-straight line, and the gears turn in their exact ratio. Where it lies on the flank, how long, how the flanks part beside
-it and what errors of alignment do to it is here.
+The path of contact is a straight line (:mod:`facegear.geometry.action_path`), and the gears turn in their exact ratio.
+How the flanks part beside it and what errors of alignment do to it is here.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from facegear.geometry.action_lines import ActionLines
-from facegear.geometry.contact_lines import ContactRegion
+from facegear.geometry.action_path import ActionPath
 from facegear.geometry.drive import Drive
 from facegear.geometry.hertz import Ellipse, contact_ellipse
-from facegear.geometry.misalignment import ALIGNED, LONGEST, WIDEST, Misalignment
+from facegear.geometry.misalignment import LONGEST, WIDEST, Misalignment
 from facegear.geometry.proportions import involute
-from facegear.support.parameters import finite_array, keep, nonnegative, one_of, within
+from facegear.support.kinds import require_kinds
+from facegear.support.parameters import finite_array, nonnegative, one_of, within
 from facegear.support.types import FloatArray
 
 # Halvings of a misalignment that leaves no contact, to say how much of it would, and digits of that.
@@ -33,7 +29,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class UnloadedContact:
+class UnloadedContact(ActionPath):
     """Contact of a pinion and a face gear cut by a shaper with more teeth, without load.
 
     Parameters
@@ -57,40 +53,23 @@ class UnloadedContact:
     (206.375, 1.557364)
     """
 
-    drive: Drive
-    misalignment: Misalignment = ALIGNED
-
     def __post_init__(self) -> None:
-        for name, kind in (("drive", Drive), ("misalignment", Misalignment)):
-            if not isinstance(getattr(self, name), kind):
-                raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
+        require_kinds(self, drive=Drive, misalignment=Misalignment)
         if self.drive.has_line_contact:
             raise ValueError(
                 f"drive.shaper_teeth must exceed pinion_teeth={self.drive.pinion_teeth} for contact at a point; with "
                 "as many teeth it is along lines"
             )
-        fault = self._fault()
+        fault = self.fault()
         if fault is None:
             return
-        drive, aligned = self.drive, _unchecked(self.drive, self._share(0.0))._fault()
+        drive, aligned = self.drive, ActionPath(self.drive, self._share(0.0)).fault()
         if aligned is not None:
             raise ValueError(
                 f"pinion_teeth={drive.pinion_teeth}, gear_teeth={drive.gear_teeth}, shaper_teeth={drive.shaper_teeth} "
                 f"leave aligned gears no {aligned}; take other tooth numbers"
             )
         raise ValueError(f"misalignment leaves no {fault}; {self.misalignment!r}{self._hint()}")
-
-    def _fault(self) -> str | None:
-        """Say what the misalignment leaves none of, if it does."""
-        if not self.lines.rising:
-            return (
-                "normal of the flank that touches the pinion's base circle: its teeth and those of the gear do not "
-                "meet"
-            )
-        lowest, highest = self._rolls
-        if lowest < highest:
-            return None
-        return f"contact on the flank: at −y_p = {1e3 * self._radius_of(lowest):.3f} mm it is {self._beyond(lowest)}"
 
     def _share(self, share: float) -> Misalignment:
         """Return so much of the misalignment, about the same pivot."""
@@ -117,93 +96,6 @@ class UnloadedContact:
             if _touches(self.drive, self._share(share))
             else ""
         )
-
-    @cached_property
-    def lines(self) -> ActionLines:
-        """Lines of action of the two gears."""
-        return ActionLines(self.drive, self.misalignment)
-
-    @property
-    def _shaper(self) -> Drive:
-        return self.drive.generating
-
-    @property
-    def _region(self) -> ContactRegion:
-        return self._shaper.contact_region
-
-    @cached_property
-    def pressure_angle(self) -> float:
-        """Local pressure angle q of the contact [rad], the same all through the mesh."""
-        # Of several the one next to the nominal pressure angle.
-        return min(self.lines.rising, key=lambda q: abs(q - self.drive.pressure_angle))
-
-    @property
-    def position(self) -> float:
-        """Coordinate u at which the flank touches [m], the same all through the mesh, see :attr:`face`."""
-        return float(self._region.position(self.pressure_angle))
-
-    @property
-    def face(self) -> tuple[float, float]:
-        """Least and largest coordinate u of a point of the flank [m].
-
-        u is where the shaper makes it: along its axis, from where the axes of shaper and gear meet, to that point
-        (u_s of (3-5)). The limits of the tooth, L1 and L2 (`Drive.inner_limit`, `outer_limit`), lie on the gear plane
-        instead: they are the distances −y_p of its edges from the gear's axis over sin γ, and equal u between shafts at
-        90° only. Otherwise an edge has another u at each height of the tooth, and all of the tooth lies between these.
-        """
-        low, high = (float(self._region.position(q)) for q in self.face_angles)
-        return low, high
-
-    @cached_property
-    def face_angles(self) -> tuple[float, float]:
-        """Least and largest local pressure angle q of a point of the flank [rad]."""
-        shaper, region = self._shaper, self._region
-        rolls = (0.0, shaper.shaper_tip_roll)
-        first = min(region.edge_angle(shaper.flank_start, roll) for roll in rolls)
-        return first, max(region.edge_angle(shaper.outer_radius, roll) for roll in rolls)
-
-    @property
-    def contact_ratio(self) -> float:
-        """Mesh periods that a pair of teeth touches."""
-        lowest, highest = self._rolls
-        return (highest - lowest) * self._shaper.pinion_teeth / (2.0 * math.pi)
-
-    @cached_property
-    def _rolls(self) -> tuple[float, float]:
-        """Roll angles θs of the shaper at which contact begins at the gear's tooth top, and ends at the pinion's tip.
-
-        Between the edges of the face; where the pinion's base circle or the shaper's tip comes first, there.
-        """
-        q, region, shaper = self.pressure_angle, self._region, self._shaper
-        start = float(self.lines.at(q)[2])
-        base, own = shaper.base_radius, self.drive.base_radius
-        lowest = max(0.0, -start / base)
-        highest = min((own * self.drive.pinion_tip_roll - start) / base, shaper.shaper_tip_roll)
-
-        def above(roll: float) -> float:
-            return float(region.depth(q, roll)) - shaper.tooth_top_distance
-
-        def inside(roll: float) -> float:
-            return self._radius_of(roll) - shaper.flank_start
-
-        def outside(roll: float) -> float:
-            return shaper.outer_radius - self._radius_of(roll)
-
-        for function in (above, inside, outside):
-            lowest, highest = _where_positive(function, lowest, highest)
-        return lowest, highest
-
-    def _radius_of(self, roll: float) -> float:
-        """−y_p of a point on the line of contact where it was made [m]."""
-        return float(self._region.radial_position(self.pressure_angle, roll))
-
-    def _beyond(self, roll: float) -> str:
-        radius, shaper = self._radius_of(roll), self._shaper
-        if radius < shaper.flank_start:
-            return f"inside the inner edge at {1e3 * shaper.inner_radius:.3f} mm, where an edge bears"
-        if radius > shaper.outer_radius:
-            return f"outside the outer edge at {1e3 * shaper.outer_radius:.3f} mm, where an edge bears"
-        return "off the height of the tooth, where its top or the pinion's tip bears"
 
     def gap(self, position: ArrayLike) -> FloatArray:
         """Gap between the flanks along the normal, in slices along the face, the same at every rotation [m].
@@ -233,7 +125,7 @@ class UnloadedContact:
                 f"position must lie in [{low:.6g}, {high:.6g}] m, the coordinates u along the shaper's axis where the "
                 f"flank has points; got {bad:.6g} m{hint}"
             )
-        angles = np.arccos(float(self._region.position(0.0)) / u)
+        angles = np.arccos(float(self.drive.contact_region.position(0.0)) / u)
         return self.lines.offset(angles) - self.lines.offset(self.pressure_angle)
 
     @property
@@ -263,11 +155,6 @@ class UnloadedContact:
         return np.asarray(
             np.linalg.eigvalsh(self.lines.curvature_tensor(self.pressure_angle, roll)), dtype=float
         )
-
-    @property
-    def rolls(self) -> FloatArray:
-        """Roll angles θs of the shaper at the ends of the path of contact, ascending, shape (2,) [rad]."""
-        return np.array(self._rolls)
 
     def hertz(self, force: float, modulus: float) -> Ellipse:
         """Contact ellipse under a force, in the middle of the path.
@@ -320,7 +207,7 @@ class UnloadedContact:
             If `depth` is not a number of 0 or more.
         """
         depth = nonnegative("depth", depth, "m")
-        shaper, middle = self._shaper, self.pressure_angle
+        shaper, middle = self.drive.generating, self.pressure_angle
         roll = 0.5 * sum(self._rolls)
         here = float(self.lines.offset(middle))
 
@@ -329,9 +216,11 @@ class UnloadedContact:
 
         ends = []
         for edge in (shaper.flank_start, shaper.outer_radius):
-            q = self._region.edge_angle(edge, roll)
+            q = self.drive.contact_region.edge_angle(edge, roll)
             ends.append(q if excess(q) <= 0.0 else float(brentq(excess, middle, q, xtol=1e-15)))
-        return float(self._region.position(ends[0])), float(self._region.position(ends[1]))
+        return float(self.drive.contact_region.position(ends[0])), float(
+            self.drive.contact_region.position(ends[1])
+        )
 
     def window(self, error: str) -> tuple[float, float]:
         """Range of one error of alignment in which contact stays on the flank, all others as they are.
@@ -393,24 +282,4 @@ class UnloadedContact:
 
 def _touches(drive: Drive, misalignment: Misalignment) -> bool:
     """Whether a misalignment leaves contact, without the message that says why it does not."""
-    return _unchecked(drive, misalignment)._fault() is None
-
-
-def _unchecked(drive: Drive, misalignment: Misalignment) -> UnloadedContact:
-    """Return the contact of a misalignment that may leave none."""
-    contact = object.__new__(UnloadedContact)
-    keep(contact, drive=drive, misalignment=misalignment)
-    return contact
-
-
-def _where_positive(function: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
-    """Part of an interval where a monotonic function is not negative; empty, (end, end), if it is nowhere so."""
-    if low >= high:
-        return low, high
-    first, last = function(low), function(high)
-    if first >= 0.0 and last >= 0.0:
-        return low, high
-    if first < 0.0 and last < 0.0:
-        return (low, low) if first > last else (high, high)
-    place = float(brentq(function, low, high, xtol=1e-16, rtol=8.9e-16))
-    return (place, high) if first < 0.0 else (low, place)
+    return ActionPath(drive, misalignment).fault() is None

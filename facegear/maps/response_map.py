@@ -38,6 +38,8 @@ _RESOLUTION = 1e-8
 _HARMONICS = 6
 # Part of the largest force that is no peak, but rounding.
 _NOISE = 1e-10
+# Steps of the resolution within which a peak is at a border of instability.
+_AT_BORDER = 10.0
 
 
 @one_thread()
@@ -57,7 +59,7 @@ def frequency_response(
     Parameters
     ----------
     model : Model
-        With forces or transmission errors, such as :class:`facegear.floquet.models.Excited`.
+        With forces or transmission errors, such as :class:`facegear.floquet.modified_models.Excited`.
     speeds : array_like, shape (S,)
         Speeds [rad/s], greater than 0, ascending.
     together : sequence of sequence of int, optional
@@ -80,7 +82,8 @@ def frequency_response(
         no response is known. Along "peak": speed, load, rms, lowest and highest value of the force, and label of the
         local maxima of that rms that show at the speeds, or where a natural frequency of the mean system meets one of
         the first six harmonics of the mesh between speeds too far apart to show it. Narrower peaks from elsewhere may
-        be missed, and the first and last speed are none.
+        be missed, and the first and last speed are none. Nor are places where that rms rises up to a border of
+        instability, at which it may have no bound: attribute `at_borders` counts those that were met.
 
     Raises
     ------
@@ -114,9 +117,10 @@ def frequency_response(
     dataset = _dataset(found, ("speed",), speed_coordinates(speeds), model, asked)
     dataset.attrs["peaks"] = (
         "local maxima that show at the speeds, or where one of the first six harmonics of the mesh meets a natural "
-        "frequency of the mean system; none at the first and last speed"
+        "frequency of the mean system; none at the first and last speed, nor at a border of instability"
     )
-    return dataset.assign(_peaks(model, at, every[where], asked, resolution))
+    peaks, dataset.attrs["at_borders"] = _peaks(model, at, every[where], asked, resolution)
+    return dataset.assign(peaks)
 
 
 @one_thread()
@@ -337,14 +341,16 @@ def _dataset(
 
 def _peaks(
     model: Model, speeds: FloatArray, numbers: FloatArray, asked: _Asked, resolution: float
-) -> dict[str, Any]:
+) -> tuple[dict[str, Any], int]:
     """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled.
 
-    From numbers of :func:`_numbers` at ascending speeds (S,), shape (S, loads, 10).
+    From numbers of :func:`_numbers` at ascending speeds (S,), shape (S, loads, 10). Those at a border of instability
+    are counted only.
     """
     from scipy.signal import find_peaks
 
     peaks: list[tuple[float, int, float, float, float, str]] = []
+    at_borders = 0
     for load in range(numbers.shape[1]):
         rms, forces = numbers[:, load, 5], np.abs(numbers[:, load, 6:8])
         noise = _NOISE * float(np.nan_to_num(forces).max())
@@ -354,7 +360,10 @@ def _peaks(
             for i in find_peaks(rms[run], prominence=max(noise, np.finfo(float).tiny))[0].tolist():
                 three = run[i - 1 : i + 2]
                 known = dict(zip(speeds[three].tolist(), numbers[three], strict=True))
-                speed, found = _settled(model, asked, load, known, resolution)
+                speed, found, at_border = _settled(model, asked, load, known, resolution)
+                if at_border:
+                    at_borders += 1
+                    continue
                 response = _response(model, speed, asked)
                 label = "" if response is None else resonance(response).label
                 peaks.append((speed, load, *found[load, 5:8].tolist(), label))
@@ -362,7 +371,7 @@ def _peaks(
     columns = [list(column) for column in zip(*peaks, strict=True)] if peaks else [[]] * 6
     places, loads, values, lowest, highest, labels = columns
     extremes = {"lowest": lowest, "highest": highest}
-    return {
+    variables = {
         "peak_speed": (
             "peak",
             np.array(places, dtype=float),
@@ -388,12 +397,16 @@ def _peaks(
             {"long_name": "number of the mode / harmonic of the mesh"},
         ),
     }
+    return variables, at_borders
 
 
 def _settled(
     model: Model, asked: _Asked, load: int, known: dict[float, FloatArray], resolution: float
-) -> tuple[float, FloatArray]:
-    """Speed and numbers at a peak of a load that lies between the first and the last of three known speeds."""
+) -> tuple[float, FloatArray, bool]:
+    """Find a peak of a load between the first and the last of three known speeds.
+
+    Returns its speed and numbers, and whether a speed without a response is all but as near as the resolution.
+    """
     bracket = tuple(known)
     numbers = dict(known)
 
@@ -405,7 +418,9 @@ def _settled(
     if depth(bracket[1]) < min(depth(bracket[0]), depth(bracket[2])):
         minimize_scalar(depth, bracket=bracket, method="brent", options={"xtol": resolution})
     best = min(numbers, key=depth)
-    return best, numbers[best]
+    unknown = [speed for speed, found in numbers.items() if np.isnan(found[load, 5])]
+    at_border = any(abs(speed - best) <= _AT_BORDER * resolution * best for speed in unknown)
+    return best, numbers[best], at_border
 
 
 def _resonances_between(model: Model, speeds: FloatArray, resolution: float) -> FloatArray:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.floquet.eigenvectors import change
+from facegear.floquet.eigenvectors import change, critical
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.maps.peaks import largest_between
 from facegear.support.types import ComplexArray, FloatArray
@@ -249,14 +249,11 @@ class _Critical(NamedTuple):
 def _critical(curve: MultiplierCurve, speeds: FloatArray, threshold: float) -> list[_Critical]:
     """Critical motions at speeds (m,)."""
     found = []
-    for part in np.array_split(speeds, speeds.size // curve.batch + 1):
-        values, vectors = np.linalg.eig(curve.transition_matrices(part))
-        left = np.linalg.inv(vectors + 1e-15 * np.eye(vectors.shape[-1]))
-        # Of a conjugate pair the one above the axis, at each speed.
-        largest = np.argmax(np.abs(values) * np.where(values.imag < 0.0, 1.0 - 1e-9, 1.0), axis=1)
-        for row, k in enumerate(largest.tolist()):
-            growth = float(np.abs(values[row, k])) - 1.0 - threshold
-            found.append(_Critical(float(part[row]), growth, left[row, k], vectors[row, :, k]))
+    for start in range(0, speeds.size, curve.batch):
+        part = speeds[start : start + curve.batch]
+        values, right, left = critical(curve.transition_matrices(part))
+        growth = np.abs(values) - 1.0 - threshold
+        found += list(map(_Critical, part.tolist(), growth.tolist(), left, right))
     return found
 
 

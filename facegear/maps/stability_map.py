@@ -704,9 +704,9 @@ def _layout(columns: _Columns, speeds: FloatArray) -> tuple[list[_Chunk], list[_
 
 def _periods(sweep: _Sweep, speeds: FloatArray, turned: FloatArray) -> FloatArray:
     """T0 [s] of each cell, (V, S), from the angle by which it turns in it: the parameter may be a number of teeth."""
-    for probe in sweep.probes:
+    for probe, model in zip(sweep.probes, sweep.probed, strict=True):
         for speed in (float(speeds[speeds.size // 2]), float(speeds[-1])):
-            period = sweep.models[probe].system(speed).period
+            period = model.system(speed).period
             if abs(period * speed - turned[probe]) > 1e-12 * turned[probe]:
                 # Not in inverse proportion to speed.
                 return np.array([[m.system(v).period for v in speeds.tolist()] for m in sweep.models])

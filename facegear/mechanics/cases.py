@@ -9,8 +9,8 @@ from typing import Any
 
 from facegear.geometry.drive import Drive
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad
 
 MODULE = 25.4e-3 / 8
 """Module of both drives, diametral pitch 8 per inch [m] (table 4.1)."""

@@ -17,8 +17,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.support.parameters import finite, finite_array, keep, nonnegative, positive, within
 from facegear.support.types import FloatArray

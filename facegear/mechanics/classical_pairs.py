@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev
 from facegear.mechanics.classical import cosine_wave
 from facegear.support.parameters import finite, keep, nonnegative, positive, within

@@ -14,9 +14,9 @@ from typing import ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from facegear.mechanics.properties import Material
 from facegear.mechanics.slices import Slices
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
-from facegear.support.parameters import Material
 from facegear.support.types import FloatArray
 
 # Newton's rule for the approach: steps, and the error at which it ends, relative.

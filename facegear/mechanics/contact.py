@@ -18,7 +18,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.floquet.periodic import Rate
+from facegear.floquet.loads import Rate
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath

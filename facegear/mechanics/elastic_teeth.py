@@ -20,8 +20,8 @@ import numpy as np
 
 from facegear.geometry.drive import Drive
 from facegear.mechanics.cantilever_plate import ACROSS, ALONG, CantileverPlate, Load
+from facegear.mechanics.properties import Material
 from facegear.mechanics.slices import Slices
-from facegear.support.parameters import Material
 from facegear.support.types import FloatArray
 
 # Hertzian pressure for which the local compliance is taken, over E: 1 GPa with steel.

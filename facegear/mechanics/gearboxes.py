@@ -14,9 +14,10 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from facegear.geometry.drive import Drive
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.torsional import Gearbox, Torsional, cylinder_inertia
-from facegear.support.parameters import STEEL, designed, keep, nonnegative, positive
+from facegear.support.parameters import designed, keep, nonnegative, positive
 
 DRIVE = Drive(31, 107, 25.4e-3 / 8)
 """Drive of table 7.1: 31 and 107 teeth, diametral pitch 8 per inch."""

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 
 from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import undamped_frequencies
-from facegear.floquet.periodic import PeriodicSystem, named
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.mechanics.exact_rods import exact_frequencies
+from facegear.mechanics.properties import STEEL, Material
 from facegear.mechanics.rods import (
     MOST_MODES,
     Rod,
@@ -22,7 +23,8 @@ from facegear.mechanics.rods import (
     with_mass,
 )
 from facegear.mechanics.torsional import InSi, Torsional, natural_speed
-from facegear.support.parameters import STEEL, Material, designed, integer_within, keep, within
+from facegear.support.kinds import require_kinds
+from facegear.support.parameters import designed, integer_within, keep, within
 from facegear.support.types import FloatArray
 
 # Lengths of shafts with mass [m]: thin disks, and as long as an airframe.
@@ -68,10 +70,7 @@ class HeavyShafts:
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        if not isinstance(self.torsional, Torsional):
-            raise TypeError(f"torsional must be a Torsional, got {named(self.torsional)}")
-        if not isinstance(self.material, Material):
-            raise TypeError(f"material must be a Material, got {named(self.material)}")
+        require_kinds(self, torsional=Torsional, material=Material)
         for name in ("input_length", "output_length"):
             keep(self, **{name: _checked_length(name, getattr(self, name))})
         keep(self, modes=integer_within("modes", self.modes, 0, MOST_MODES))

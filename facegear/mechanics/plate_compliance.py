@@ -25,8 +25,8 @@ from numpy.polynomial import Chebyshev, legendre
 from facegear.mechanics.compliance import Compliance, Lines, between
 from facegear.mechanics.elastic_teeth import Tooth, local_compliance, teeth_of
 from facegear.mechanics.line_influence import influence_on_lines, polynomial_slopes, polynomials
+from facegear.mechanics.properties import Material
 from facegear.mechanics.slices import Slices
-from facegear.support.parameters import Material
 from facegear.support.quadrature import gauss
 from facegear.support.types import FloatArray
 

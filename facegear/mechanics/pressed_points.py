@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -163,6 +164,7 @@ def points_on(body: Body, spread: Spread) -> PressedPoints:
     return points_from(spread, body.drive, body.bore_ratio)
 
 
+@lru_cache(maxsize=64)
 def points_from(spread: Spread, drive: Drive, bore_ratio: float) -> PressedPoints:
     """As :func:`points_on`, on a disk of which the teeth and the bore over the outer radius are known."""
     points = spread.points(drive)

@@ -8,7 +8,7 @@ where second derivatives are taken.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -21,6 +21,7 @@ from facegear.support.parameters import (
     integer_within,
     within,
 )
+from facegear.support.quadrature import gauss_legendre
 from facegear.support.types import FloatArray
 
 BORE_RATIO_RANGE = (0.05, 0.9)
@@ -167,17 +168,10 @@ def plate_quadrature(bore_ratio: float) -> tuple[FloatArray, FloatArray]:
     nodes, weights : ndarray, shape (80,)
         Radii x [-] and weights with the factor x of the area element [-].
     """
-    points, weights = _gauss_legendre()
+    points, weights = gauss_legendre(_QUADRATURE_NODES)
     half = (1.0 - bore_ratio) / 2
     x = bore_ratio + half * (points + 1.0)
     return x, half * weights * x
-
-
-@cache
-def _gauss_legendre() -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights on [-1, 1]; an eigenproblem, of which every disk wants a dozen."""
-    points, weights = legendre.leggauss(_QUADRATURE_NODES)
-    return np.asarray(points), np.asarray(weights)
 
 
 def centrifugal_stress(

@@ -3,8 +3,8 @@
 The total angle of a pinion does two things. Whole teeth of it turn the contact about the axis, θ → θ + θ_a; what is
 left over sets the phase ψ of its mesh (5-1, 5-2). The spinning disk looks alike from all sides: its free motions are
 waves e^{i(ωt − nθ)}, and a rotation multiplies what a contact sees of each, and what its force does to each, by
-e^{∓inθ_a}. So of the equations of :mod:`facegear.floquet.collocation` all is known for every θ_a as soon as it is known
-for θ_a = 0, at given phases:
+e^{∓inθ_a}. So of the equations of :mod:`facegear.floquet.contact_forces` all is known for every θ_a as soon as it is
+known for θ_a = 0, at given phases:
 
     H_ab(θ) = Re Σ_n e^{−in(θ_a − θ_b)} H_ab,n,    F_a(θ) = F_a e^{−inθ_a},    G_b(θ) = e^{inθ_b} G_b.
 
@@ -18,8 +18,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.floquet.collocation import FreeModes, chain, gauss_rule, panel_edges
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.collocation import chain
+from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.free_modes import FreeModes
+from facegear.floquet.gauss_panels import gauss_rule, panel_edges
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import merge_breakpoints
 from facegear.geometry.phases import phase_split
 from facegear.mechanics.disk import disk_modes
@@ -49,7 +53,7 @@ class DiskWaves:
     waves : array, shape (n,)
         Signed nodal diameters n of e^{i(Im p t − nθ)}: positive for a wave that runs towards growing θ.
     displacement, velocity, input : complex array, shape (n, n)
-        As in :class:`facegear.floquet.collocation.FreeModes`.
+        As in :class:`facegear.floquet.free_modes.FreeModes`.
     """
 
     eigenvalues: ComplexArray
@@ -276,10 +280,9 @@ def growth_rates_at_angles(model: Transverse, speed: float, pinion_angles: Array
     waves = DiskWaves.of(model, system)
     phases = phase_split(model.body.drive, angles).phase
     _, group = np.unique(np.rint(phases / _SAME_PHASE), axis=0, return_inverse=True)
-    radii = np.empty(angles.shape[0])
+    matrices = np.empty((angles.shape[0], 2 * waves.waves.size, 2 * waves.waves.size))
     for number in range(int(group.max()) + 1):
         own = np.flatnonzero(group.ravel() == number)
         pinions = TurnedPinions(model, speed, phases[own[0]], waves)
-        multipliers = np.linalg.eigvals(pinions.transition_matrices(angles[own]))
-        radii[own] = np.abs(multipliers).max(axis=-1)
-    return np.asarray(np.log(radii) / system.period, dtype=float)
+        matrices[own] = pinions.transition_matrices(angles[own])
+    return np.asarray(np.log(spectral_radii(matrices)) / system.period, dtype=float)

@@ -16,7 +16,9 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.proportions import DEDENDUM
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pressed_points import PressedPoints, Spread, require_spread
+from facegear.support.kinds import require_kind
 from facegear.support.parameters import keep, nonnegative, within
+from facegear.support.quadrature import gauss_legendre
 from facegear.support.types import FloatArray
 
 # Gauss nodes along the face, across a root and in each smooth piece of the mesh period: more change nothing.
@@ -94,12 +96,12 @@ class FaceStrip(Spread):
 
 def _strip(drive: Drive, root_thickness: float) -> PressedPoints:
     """Face of one tooth and its root, pressed equally hard everywhere."""
-    along, part = np.polynomial.legendre.leggauss(_ALONG)
+    along, part = gauss_legendre(_ALONG)
     inner = drive.inner_radius / drive.outer_radius
     radius, share = (1.0 + inner) / 2 + (1.0 - inner) / 2 * along, part / 2
     if root_thickness == 0.0:
         return PressedPoints(radius, np.zeros(_ALONG), share)
-    across, weight = np.polynomial.legendre.leggauss(_ACROSS)
+    across, weight = gauss_legendre(_ACROSS)
     half = root_thickness / (2 * drive.outer_radius)
     angle = half * across / radius[:, np.newaxis]
     return PressedPoints(np.repeat(radius, _ACROSS), angle.ravel(), np.outer(share, weight / 2).ravel())
@@ -146,7 +148,7 @@ class ContactPointsAt(Spread):
     fraction: float
 
     def __post_init__(self) -> None:
-        _require_contact(self.contact)
+        require_kind("contact", self.contact, Contact)
         keep(self, fraction=within("fraction", self.fraction, 0.0, 1.0))
 
     def points(self, drive: Drive) -> PressedPoints:
@@ -186,12 +188,12 @@ class ContactPoints(Spread):
     contact: Contact
 
     def __post_init__(self) -> None:
-        _require_contact(self.contact)
+        require_kind("contact", self.contact, Contact)
 
     def points(self, drive: Drive) -> PressedPoints:
         """Contact points at Gauss nodes in each smooth piece of the mesh period."""
         self.contact.require(drive)
-        nodes, weights = np.polynomial.legendre.leggauss(_IN_PIECE)
+        nodes, weights = gauss_legendre(_IN_PIECE)
         breakpoints = self.contact.places(drive)[0].position.breakpoints
         length = np.diff(np.append(breakpoints, 1.0))[:, np.newaxis]
         pieces = zip(
@@ -237,11 +239,6 @@ class ToothPatches(Spread):
             np.add.outer(teeth.angle, tooth.angle).ravel(),
             np.outer(teeth.share, tooth.share).ravel(),
         )
-
-
-def _require_contact(value: object) -> None:
-    if not isinstance(value, Contact):
-        raise TypeError(f"contact must be a Contact, got {value!r}")
 
 
 def _touching(

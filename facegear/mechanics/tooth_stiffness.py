@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from facegear.geometry.drive import Drive
-from facegear.support.parameters import STEEL, Material, within
+from facegear.mechanics.properties import STEEL, Material
+from facegear.support.parameters import within
 
 # Least c_f of (7-2) that is taken for one.
 _LEAST_FACTOR = 1e-6

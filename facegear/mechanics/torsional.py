@@ -21,24 +21,18 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import undamped_frequencies
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import SKEW_LINE, Contact
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.tooth_stiffness import tooth_stiffness
-from facegear.support.parameters import (
-    STEEL,
-    designed,
-    finite_array,
-    keep,
-    nonnegative,
-    one_of,
-    positive,
-    within,
-)
+from facegear.support.kinds import require_kind
+from facegear.support.parameters import designed, finite_array, keep, nonnegative, one_of, positive, within
 from facegear.support.types import FloatArray
 
 Arm = Literal["printed", "conjugate"]
@@ -125,8 +119,7 @@ class Gearbox:
     output_damping: float = field(metadata=designed("output shaft damping"))
 
     def __post_init__(self) -> None:
-        if not isinstance(self.drive, Drive):
-            raise TypeError(f"drive must be a Drive, got {self.drive!r}")
+        require_kind("drive", self.drive, Drive)
         inertia, stiffness = _steel_scales(self.drive)
         mesh = within("mesh_stiffness", self.mesh_stiffness, stiffness / 500.0, stiffness * 20.0, "N/m")
         keep(
@@ -255,8 +248,7 @@ class Torsional:
     def __post_init__(self) -> None:
         if not isinstance(getattr(self.gearbox, "in_si", None), Gearbox):
             raise TypeError(f"gearbox must be a Gearbox, got {self.gearbox!r}")
-        if not isinstance(self.contact, Contact):
-            raise TypeError(f"contact must be a Contact, got {self.contact!r}")
+        require_kind("contact", self.contact, Contact)
         one_of("arm", self.arm, ("printed", "conjugate"))
         self.contact.require(self.drive)
 
@@ -269,6 +261,11 @@ class Torsional:
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Elastic deviation angles χ1, χ2, χo (7-9)."""
         return tuple(Coordinate(name, "rad", name) for name in ("pinion", "face gear", "load"))
+
+    @property
+    def not_buildable(self) -> tuple[str, ...]:
+        """What cannot be built: nothing, as shafts without mass have no length or diameter."""
+        return ()
 
     @property
     def contact_ratio(self) -> float:

@@ -77,7 +77,7 @@ def _strip(ax: Axes, place: float, intervals: Intervals, speeds_rpm: tuple[float
 
 @styled
 def dynamic_load(response: xr.Dataset, static: float) -> Figure:
-    """Draw the largest and the smallest force of a tooth pair over speed; gaps where the gearbox is unstable.
+    """Draw the largest and the smallest force of a tooth pair over speed, and at peaks; gaps where it is unstable.
 
     Parameters
     ----------
@@ -91,10 +91,12 @@ def dynamic_load(response: xr.Dataset, static: float) -> Figure:
     highest, lowest = response["force_highest"].max("load"), response["force_lowest"].min("load")
     ax.plot(speed, np.asarray(highest) / 1e3, color=VERMILION, marker=".", label="largest of a pair")
     ax.plot(speed, np.asarray(lowest) / 1e3, color=ORANGE, marker=".", label="smallest of a pair")
+    _peaks(ax, response, 0.0, 1e3)
     ax.axhline(static / 1e3, color=INK, linestyle="--", linewidth=1.0, label="all pairs together, at rest")
-    ax.set_yscale("symlog", linthresh=2.0 * static / 1e3)
+    # Linear up to a power of ten, or labels would meet at zero.
+    ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(2.0 * static / 1e3)), linscale=2.0)
     ax.set(xlabel=_SPEED, ylabel="force between teeth [kN]")
-    figure.legend(loc="outside lower center", ncols=3)
+    figure.legend(loc="outside lower center", ncols=2)
     return figure
 
 
@@ -118,9 +120,26 @@ def disk_forces(responses: Mapping[str, xr.Dataset], static: float) -> Figure:
         ax.fill_between(speed, low, high, color=VERMILION, alpha=_STABLE, linewidth=0.0)
         ax.plot(speed, high, color=VERMILION, marker=".", markersize=3, label="highest")
         ax.plot(speed, low, color=ORANGE, marker=".", markersize=3, label="lowest")
+        _peaks(ax, data, static, static)
         ax.axhline(0.0, color=INK, linestyle="--", linewidth=1.0, label="flanks part")
         ax.set(ylabel="force / static", title=name)
     axes[-1].set_xlabel(_SPEED)
-    handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    # Peaks are not in every panel.
+    named = {
+        label: handle for ax in axes for handle, label in zip(*ax.get_legend_handles_labels(), strict=True)
+    }
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=2)
     return figure
+
+
+def _peaks(ax: Axes, response: xr.Dataset, offset: float, unit: float) -> None:
+    """Mark the forces at resonances between the speeds, an offset added."""
+    if not response.sizes["peak"]:
+        return
+    speed = rpm(response["peak_speed"].values)
+    for end, colour, words in (
+        ("highest", VERMILION, "at resonances between the speeds"),
+        ("lowest", ORANGE, None),
+    ):
+        force = (offset + response[f"peak_force_{end}"].values) / unit
+        ax.plot(speed, force, color=colour, marker="^", markersize=5, linestyle="none", label=words)

@@ -121,12 +121,7 @@ def slider(
     -------
     ipywidgets.VBox
     """
-    pages = [
-        ipywidgets.HTML(
-            f'<img src="data:image/png;base64,{_png(figure)}" alt="{escape(alt)}" style="max-width:100%">'
-        )
-        for figure, alt in zip(figures, alts, strict=True)
-    ]
+    pages = [ipywidgets.HTML(image(figure, alt, dpi=110)) for figure, alt in zip(figures, alts, strict=True)]
     control = ipywidgets.SelectionSlider(
         options=[(label, step) for step, label in enumerate(labels)],
         description=description,
@@ -138,7 +133,21 @@ def slider(
     return ipywidgets.VBox([control, stack])
 
 
-def _png(figure: Figure) -> str:
+def image(figure: Figure, alt: str, name: str = "", dpi: int = 100) -> str:
+    """HTML of a figure as a picture that stands in the page itself.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+    alt : str
+        What it shows, for readers who cannot see it.
+    name : str
+        Class of the element, by which a page finds it.
+    dpi : int
+        Dots an inch.
+    """
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=110)
-    return base64.b64encode(buffer.getvalue()).decode()
+    figure.savefig(buffer, format="png", dpi=dpi)
+    drawn = base64.b64encode(buffer.getvalue()).decode()
+    named = f'class="{name}" ' if name else ""
+    return f'<img {named}src="data:image/png;base64,{drawn}" alt="{escape(alt)}" style="max-width:100%">'

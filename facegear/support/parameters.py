@@ -1,4 +1,4 @@
-"""Checked inputs: what every quantity may be, units at the edges, material and mesh load.
+"""Checked inputs: what every quantity may be, and units at the edges.
 
 Inside the package everything is in SI units and radians. Every public entry checks what it is given with the
 functions below, so that one wrong number ends in one sentence that names the parameter. What they return is a
@@ -8,7 +8,6 @@ which ``np.int8(70) - 1`` still fits and ``np.int8(70) + 70`` does not. A boolea
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
 from numbers import Integral, Real
 from typing import Any
 
@@ -362,91 +361,3 @@ def watt(power_hp: ArrayLike) -> Any:
     745700
     """
     return _converted("power_hp", power_hp, WATT_PER_HORSEPOWER)
-
-
-@dataclass(frozen=True)
-class Material:
-    """Isotropic linear elastic material of the face-gear body.
-
-    Parameters
-    ----------
-    density : float
-        ρ [kg/m³], from 100 to 30000.
-    youngs_modulus : float
-        E [Pa], from 1e8 to 2e12.
-    poissons_ratio : float
-        ν, from 0 to 0.5.
-    viscous_loss_factor : float
-        ξ [s], from 0 to 0.01: damping stress over elastic stress rate.
-    yield_strength : float
-        σ_Y [Pa], from 1e6 to 1e10.
-
-    Raises
-    ------
-    TypeError, ValueError
-        A value is not a number or outside the range named above.
-    """
-
-    density: float
-    youngs_modulus: float
-    poissons_ratio: float
-    viscous_loss_factor: float = field(metadata=designed("loss factor of the material"))
-    yield_strength: float
-
-    def __post_init__(self) -> None:
-        keep(
-            self,
-            density=within("density", self.density, 100.0, 30e3, "kg/m³"),
-            youngs_modulus=within("youngs_modulus", self.youngs_modulus, 1e8, 2e12, "Pa"),
-            poissons_ratio=within("poissons_ratio", self.poissons_ratio, 0.0, 0.5),
-            viscous_loss_factor=within("viscous_loss_factor", self.viscous_loss_factor, 0.0, 0.01, "s"),
-            yield_strength=within("yield_strength", self.yield_strength, 1e6, 1e10, "Pa"),
-        )
-
-
-STEEL = Material(
-    density=7840.0,
-    youngs_modulus=200e9,
-    poissons_ratio=0.3,
-    viscous_loss_factor=5e-6,
-    yield_strength=439.9e6,
-)
-"""Table 4.3 of the dissertation."""
-
-
-@dataclass(frozen=True)
-class MeshLoad:
-    """Pinion and its bearing as the face gear feels them, dimensionless (4-17 to 4-19).
-
-    Parameters
-    ----------
-    stiffness : float
-        μ, bearing stiffness over the reference stiffness of the disk (4-17), 0 or greater.
-    damping : float
-        ζ [s], bearing damping over bearing stiffness (4-18), from 0 to 0.01.
-    mass : float
-        τ, pinion mass over its nominal mass (4-19), 0 or greater.
-
-    Raises
-    ------
-    TypeError, ValueError
-        A value is not a number or outside the range named above.
-
-    Examples
-    --------
-    >>> import facegear as fg
-    >>> fg.MeshLoad(stiffness=0.6, damping=3e-6, mass=1.0)
-    MeshLoad(stiffness=0.6, damping=3e-06, mass=1.0)
-    """
-
-    stiffness: float = field(metadata=designed("bearing stiffness"))
-    damping: float = field(metadata=designed("bearing damping"))
-    mass: float = field(metadata=designed("pinion mass"))
-
-    def __post_init__(self) -> None:
-        keep(
-            self,
-            stiffness=nonnegative("stiffness", self.stiffness),
-            damping=within("damping", self.damping, 0.0, 0.01, "s"),
-            mass=nonnegative("mass", self.mass),
-        )

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from compendium import printed
+from compendium import ledger_tables, printed
 from facegear.design.changes import effects_of_changes
 from facegear.drives import report_arrays
 from facegear.drives.assessment import Assessment
@@ -109,6 +109,7 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     data = xr.Dataset(
         forces | peaks | {"peak_label": ("peak", ["1/1"]), "peak_load": ("peak", [0])},
         {"speed": [60.0, 61.0]},
+        {"at_borders": 0},
     )
     found = Assessment(
         file,
@@ -122,7 +123,13 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     )
     folder = write_assessment(found, tmp_path / "assessment").parent
     arrays = sorted(path.name for path in folder.glob("*.nc"))
-    assert arrays == ["disk_response.nc", "disk_response_peaks.nc", "models.nc", "torsion_response.nc"]
+    assert arrays == [
+        "disk_response.nc",
+        "disk_response_peaks.nc",
+        "models.nc",
+        "torsion_response.nc",
+        "torsion_response_peaks.nc",
+    ]
     for name in arrays:
         assert_same(folder / name)
     models, response = (pd.read_csv(folder / f"{name}.csv") for name in ("models", "disk_response"))
@@ -130,7 +137,7 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
     assert response["force_rms_N"].tolist()[0] == 1.0
     assert response["force_rms_N"].isna().tolist() == [False, True]
     assert response["speed_rpm"].tolist() == pytest.approx([572.957795131, 582.507091716])
-    assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 3 + [".html"] + [".nc"] * 4
+    assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 3 + [".html"] + [".nc"] * 5
 
 
 def test_points_of_a_tooth_are_read_by_pandas(tmp_path):
@@ -143,7 +150,7 @@ def test_points_of_a_tooth_are_read_by_pandas(tmp_path):
 def test_the_ledger_is_read_by_pandas(tmp_path):
     entry = printed.PrintedValue(**ENTRY)
     rows = printed.ledger((entry,), {entry.id: 231.94})
-    frame = pd.read_csv(printed.save_csv({3: rows}, tmp_path / "ledger.csv"), dtype={"printed": str})
+    frame = pd.read_csv(ledger_tables.save_csv({3: rows}, tmp_path / "ledger.csv"), dtype={"printed": str})
     assert frame["printed"].tolist() == [entry.printed]
     assert frame["computed"].tolist() == [231.94]
     assert frame["unit"].tolist() == [entry.unit]

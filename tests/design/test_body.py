@@ -8,7 +8,8 @@ from facegear.maps.lobes import StableRangeError
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.paths import point_contact
 from facegear.mechanics.plate import Body
-from facegear.support.parameters import MeshLoad, rad_per_s, watt
+from facegear.mechanics.properties import MeshLoad
+from facegear.support.parameters import rad_per_s, watt
 from tests.comparing import agree
 
 DRIVE = constant_diametral_pitch(25)

@@ -24,9 +24,10 @@ from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.paths import loaded_contact
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import STEEL, MeshLoad
 from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.two_gears import TwoGears
-from facegear.support.parameters import STEEL, MeshLoad, rad_per_s, rpm
+from facegear.support.parameters import rad_per_s, rpm
 
 DRIVES = Path(__file__).resolve().parents[2] / "data" / "drives"
 CASE_1 = read_drive_file(DRIVES / "case_1.yaml").transverse

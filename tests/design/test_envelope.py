@@ -14,8 +14,9 @@ from facegear.maps.tracing import tongues
 from facegear.mechanics.cases import CASE_1, CASE_2, FIGURES
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s, watt
+from facegear.support.parameters import rad_per_s, watt
 
 SPEED = float(rad_per_s(5000.0))
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from facegear.design.identification import Survey, bound_together, drawn, scatter_over_bound
+from facegear.design.identification import Survey, bound_together
+from facegear.design.measurements import drawn, scatter_over_bound
 from facegear.floquet.hill import exponents
 from facegear.floquet.models import replace_parameter, value_of
 from facegear.mechanics.backlash import Backlash

@@ -16,9 +16,10 @@ from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import told
 from facegear.drives.intervals import gaps
 from facegear.drives.outcome import Outcome
-from facegear.drives.tolerances import Tolerances, WorstCase, not_known
+from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
+from facegear.drives.worst_case import WorstCase, not_known
 from facegear.floquet.labels import Combination
 from facegear.floquet.response import steady_response
 from facegear.maps.tracing import Tongue, tongues
@@ -255,22 +256,37 @@ def test_the_page_shows_hostile_names_as_text(tmp_path):
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [PAGE, "models.csv", "models.nc"]
 
 
-def test_largest_load_of_a_gearbox_is_that_of_its_steady_response():
+def test_largest_load_of_a_gearbox_is_that_of_its_steady_response_at_speeds_and_at_peaks_between():
     file = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
-    speeds = np.array([float(rad_per_s(x)) for x in (700.0, 800.0)])
     torque = file.requirements.power / file.requirements.pinion_speed * file.drive.gear_ratio
-    steady = [steady_response(file.torsional.under(torque, speed)) for speed in speeds]
-    forces = [each.contact_forces(np.linspace(0.0, 1.0, 2001)) for each in steady]
-    response = xr.Dataset(
-        {
-            "force_highest": (("speed", "load"), [force.max(axis=0) for force in forces]),
-            "force_lowest": (("speed", "load"), [force.min(axis=0) for force in forces]),
-        },
-        {"speed": speeds},
-    )
-    found = Assessment(file, (outcome("Tregold", DEAD, RIGID),), {}, {}, response, "", ())
-    at = int(np.argmax([force.max() for force in forces]))
-    assert f"{max(force.max() for force in forces):.4g} N, at {(700, 800)[at]} rpm" in found.dynamic_load
+
+    def forces(speed_rpm):
+        steady = steady_response(file.torsional.under(torque, float(rad_per_s(speed_rpm))))
+        return steady.contact_forces(np.linspace(0.0, 1.0, 2001))
+
+    def response(speeds, peaks):
+        each, between = ([forces(speed) for speed in some] for some in (speeds, peaks))
+        ends = {"highest": np.max, "lowest": np.min}
+        return xr.Dataset(
+            {
+                f"force_{name}": (("speed", "load"), [end(one, axis=0) for one in each])
+                for name, end in ends.items()
+            }
+            | {f"peak_force_{name}": ("peak", [end(one) for one in between]) for name, end in ends.items()}
+            | {"peak_speed": ("peak", rad_per_s(np.array(peaks)))},
+            {"speed": rad_per_s(np.array(speeds))},
+            {"at_borders": 0},
+        )
+
+    largest = {speed: forces(speed).max() for speed in (400.0, 700.0, 800.0)}
+    assert largest[400.0] > max(largest[700.0], largest[800.0])
+    for peaks in ([], [400.0]):
+        found = Assessment(
+            file, (outcome("Tregold", DEAD, RIGID),), {}, {}, response([700.0, 800.0], peaks), "", ()
+        )
+        speed = max((700.0, 800.0, *peaks), key=largest.__getitem__)
+        assert f"{largest[speed]:.4g} N, at {speed:.4g} rpm" in found.dynamic_load
+        assert ("of 1 peak of resonances between them" in found.dynamic_load) == bool(peaks)
     # The static force is that of the torque at the base circle.
     assert found.static_force == pytest.approx(
         torque / (file.drive.base_radius * file.drive.gear_ratio), rel=1e-12

@@ -9,8 +9,9 @@ from facegear.drives.cell import cell_detail
 from facegear.mechanics import cases
 from facegear.mechanics.classical import Meissner, meissner_trace
 from facegear.mechanics.disk import shape_vector
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 SQUARE = Meissner(depth=0.6, duty=0.4)
 

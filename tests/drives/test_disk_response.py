@@ -243,7 +243,9 @@ def forced(before, parted=-50.0, peak=-120.0):
     ends = {"speed": [31.0, 32.0], "load": [0, 0], "force_rms": [700.0, 20.0]}
     ends |= {"force_lowest": [peak, -40.0], "force_highest": [1234.5, 30.0], "label": ["4/1", "5/2"]}
     peaks = {f"peak_{name}": ("peak", values) for name, values in ends.items()}
-    return DiskResponse(variant, 1e-6, xr.Dataset(forces | peaks, {"speed": [30.0, 33.0]}), "", before)
+    return DiskResponse(
+        variant, 1e-6, xr.Dataset(forces | peaks, {"speed": [30.0, 33.0]}, {"at_borders": 0}), "", before
+    )
 
 
 def test_a_force_that_another_basis_does_not_confirm_is_not_settled():

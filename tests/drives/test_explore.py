@@ -49,6 +49,16 @@ def test_last_stage_is_the_map_and_the_first_one_agrees_where_it_is_computed(par
     assert np.isfinite(stages[0].values).all()
 
 
+def test_a_slow_map_has_every_second_row_when_half_of_it_is_final():
+    model, values = replace(SQUARE, damping_ratio=0.02), np.linspace(0.01, 0.2, 9)
+    stages = list(map_stages(model, FREQUENCIES, "damping_ratio", values))
+    (half,) = (stage for stage in stages if stage.attrs["computed"] == pytest.approx(5 / 9))
+    expected = stages[-1].values
+    assert half.values[::2] == pytest.approx(expected[::2], abs=1e-8)
+    # Those between are their neighbours'.
+    assert half.values[1::2] == pytest.approx(half.values[:-1:2])
+
+
 def test_view_is_of_the_cell_that_was_asked_for():
     study = replace(oscillator_study(), columns=9, rows=7)
     shown = view(study, 1.9, 0.6, changes={"wave": SQUARE_WAVE, "duty": 0.4, "damping_ratio": 0.0})

@@ -9,14 +9,9 @@ from numpy.testing import assert_allclose
 
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
 from facegear.drives.intervals import united
-from facegear.drives.tolerances import (
-    Toleranced,
-    TolerancedGearbox,
-    Tolerances,
-    worst_case,
-    worst_case_in_torsion,
-)
+from facegear.drives.tolerances import Toleranced, TolerancedGearbox, Tolerances
 from facegear.drives.verdict import driven
+from facegear.drives.worst_case import worst_case, worst_case_in_torsion
 from facegear.maps.tracing import tongues
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.support.parameters import rad_per_s

@@ -24,14 +24,9 @@ from benchmarks.synthetic_disk import (
     synthetic_disk,
     synthetic_shafts,
 )
-from facegear.floquet.collocation import (
-    FreeModes,
-    UnsuitableSystemError,
-    chain,
-    transition_matrices,
-    transition_matrices_to,
-)
+from facegear.floquet.collocation import chain, transition_matrices, transition_matrices_to
 from facegear.floquet.columns import column_spectral_radii, family_spectral_radii, interpolated_spectral_radii
+from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.multipliers import AdaptiveMagnus, Collocation, multipliers
 from facegear.floquet.multipliers import transition_matrices as by_method
 from facegear.floquet.periodic import LoadColumn, PeriodicSystem
@@ -207,31 +202,6 @@ def test_any_analytic_parameter_can_be_swept():
     systems = [synthetic_shafts(value) for value in values]
     direct = largest_modulus(by_method(systems, AdaptiveMagnus(1e-12)))
     assert np.abs(radii - direct).max() < 1e-8
-
-
-@pytest.mark.parametrize(
-    ("damping", "stiffness", "message"),
-    [
-        ([[10.0, 0.0], [0.0, 0.1]], np.eye(2), "overdamped"),
-        (np.diag([0.0, 50.0]), [[1.0, 0.0], [0.0, 0.0]], "rigid-body"),
-        (np.zeros((2, 2)), [[1.0, 1.0], [0.0, 1.0]], "dependent"),
-    ],
-)
-def test_unsuitable_free_motion_is_refused_with_a_reason(damping, stiffness, message):
-    system = PeriodicSystem(np.eye(2), damping, stiffness, (), 1.0)
-    with pytest.raises(UnsuitableSystemError, match=message):
-        FreeModes.of(system)
-    assert np.isfinite(multipliers(system)).all()
-
-
-def test_free_modes_are_those_of_the_disk():
-    system = synthetic_disk(300.0 * RPM, [])
-    modes = FreeModes.of(system)
-    state = system.state_matrix(0.0)
-    both = np.concatenate([modes.displacement, modes.velocity])
-    residual = np.linalg.norm(state @ both - both * modes.eigenvalues, axis=0)
-    assert (residual < 1e-9 * np.linalg.norm(state @ both, axis=0)).all()
-    assert np.abs(modes.state_from_real() @ modes.real_from_state() - np.eye(28)).max() < 1e-10
 
 
 @given(count=st.integers(1, 9), size=st.integers(1, 4), seed=st.integers(0, 99))

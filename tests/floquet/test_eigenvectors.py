@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from facegear.floquet import eigenvectors as module
-from facegear.floquet.eigenvectors import change
+from facegear.floquet.eigenvectors import change, critical
 
 MANY = 70
 
@@ -108,6 +108,23 @@ def test_values_that_are_small_beside_the_largest_are_left_out(route):
     # The largest one stays, however small it is.
     assert np.abs(found.values[1]).max() == pytest.approx(1e-9, rel=0.02)
     assert np.count_nonzero(found.values[1]) == 1
+
+
+@pytest.mark.parametrize("pair", [False, True])
+def test_the_critical_motion_is_the_one_that_was_put_in(route, pair):
+    rng = np.random.default_rng(3)
+    vectors = rng.normal(size=(MANY, 6, 6)) + 3.0 * np.eye(6)
+    blocks = np.zeros((MANY, 6, 6)) + np.diag([0.0, 0.0, 0.9, -0.7, 0.4, 0.1])
+    # A turning pair of modulus 1.2, or a negative value and a small one.
+    blocks[:, :2, :2] = [[0.72, -0.96], [0.96, 0.72]] if pair else [[-1.2, 0.0], [0.0, 0.2]]
+    inverse = np.linalg.inv(vectors)
+    found = critical(vectors @ blocks @ inverse)
+    assert found.values == pytest.approx(np.full(MANY, 0.72 + 0.96j if pair else -1.2), abs=1e-9)
+    right = vectors[:, :, 0] - 1j * pair * vectors[:, :, 1]
+    left = (inverse[:, 0] + 1j * pair * inverse[:, 1]) / (1 + pair)
+    # Each of them up to a factor, both together without one.
+    both = np.einsum("vi,vj->vij", found.right, found.left)
+    assert both == pytest.approx(np.einsum("vi,vj->vij", right, left), abs=1e-8)
 
 
 @pytest.mark.parametrize("kind", ["double", "defective"])

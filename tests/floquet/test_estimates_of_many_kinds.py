@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from facegear.floquet import multipliers as module
-from facegear.floquet.collocation import UnsuitableSystemError
+from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.multipliers import (
     AdaptiveMagnus,
     AlignedStepwise,

@@ -10,6 +10,7 @@ from scipy.linalg import eigh_tridiagonal, expm
 from scipy.optimize import brentq
 
 from facegear.floquet import averaging, hsu
+from facegear.floquet.band_speeds import band_speeds
 from facegear.floquet.modal import modal_expansion, standard_form
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
@@ -265,7 +266,7 @@ def test_band_speeds_of_constant_matrices_are_the_bands_over_the_teeth():
         )
 
     bands = by_label(hsu.resonance_bands(at(1.0), order=3))
-    found = by_label(hsu.band_speeds(SimpleNamespace(system=at), (0.03, 0.6), order=3, points=21))
+    found = by_label(band_speeds(SimpleNamespace(system=at), (0.03, 0.6), order=3, points=21))
     assert set(found) == set(bands)
     for label, band in found.items():
         assert band.lower == pytest.approx(bands[label].lower / teeth, rel=1e-7)
@@ -281,7 +282,7 @@ def test_band_speeds_of_a_disk_that_turns():
         _, system = disk(speed, size, damping)
         return replace(system, period=TURN / (4 * speed))
 
-    found = by_label(hsu.band_speeds(SimpleNamespace(system=at), (0.2, 0.9), order=1))
+    found = by_label(band_speeds(SimpleNamespace(system=at), (0.2, 0.9), order=1))
     # 4Ω = 2(1 − Ω), 2, 2(1 + Ω) at Ω = 1/3, 1/2 and 1, of which the last is out of range.
     assert set(found) == {"(1+1)/1", "(1+2)/1"}
     assert found["(1+1)/1"].centre == pytest.approx(1 / 3, rel=1e-6)
@@ -336,7 +337,7 @@ def test_contact_that_is_made_and_lost_with_damping_through_the_arm():
 
         (found,) = [
             band
-            for band in hsu.band_speeds(SimpleNamespace(system=at), (2.5, 3.8), order=1)
+            for band in band_speeds(SimpleNamespace(system=at), (2.5, 3.8), order=1)
             if band.label == "(1+2)/1"
         ]
         frequency = found.centre
@@ -373,7 +374,7 @@ def test_contact_mass_carried_along_a_path_with_a_kink():
 
         (found,) = [
             band
-            for band in hsu.band_speeds(SimpleNamespace(system=at), (1.2, 2.4), order=1)
+            for band in band_speeds(SimpleNamespace(system=at), (1.2, 2.4), order=1)
             if band.label == "(1+1)/1"
         ]
         period = TURN / found.centre
@@ -451,7 +452,7 @@ def test_statements_about_the_input_shaft():
     # 215 rpm that the text does not mention and that is not there.
     stiffness = (0.009 * MESH_STIFFNESS, 0.1 * MESH_STIFFNESS)
     at, growth = torsional(*stiffness, 1.0, 1e-5 * stiffness[1])
-    bands = hsu.band_speeds(SimpleNamespace(system=at), (140 * RPM, 1000 * RPM), order=4, reach=0.0)
+    bands = band_speeds(SimpleNamespace(system=at), (140 * RPM, 1000 * RPM), order=4, reach=0.0)
     assert covers(bands, 650) == ["(1+1)/1"]
     assert covers(bands, 322) == ["(1+1)/2"]
     assert covers(bands, 215) == ["(1+1)/3"]
@@ -466,9 +467,9 @@ def test_statements_about_the_output_shaft():
     # order s, is too small; it lives on two couplings of order 1, which the block of three eigenvalues has.
     stiffness = (0.1 * MESH_STIFFNESS, 0.03 * MESH_STIFFNESS)
     at, growth = torsional(*stiffness, 1e-5 * stiffness[0], 1.0)
-    pairs = hsu.band_speeds(SimpleNamespace(system=at), (500 * RPM, 700 * RPM), order=3, reach=0.0)
+    pairs = band_speeds(SimpleNamespace(system=at), (500 * RPM, 700 * RPM), order=3, reach=0.0)
     assert covers(pairs, 570) == []
-    bands = hsu.band_speeds(SimpleNamespace(system=at), (500 * RPM, 700 * RPM), order=3)
+    bands = band_speeds(SimpleNamespace(system=at), (500 * RPM, 700 * RPM), order=3)
     assert covers(bands, 570) == ["(1+2)/2"]
     assert covers(bands, 650) == ["(1+1)/1"]
     (combination,) = [band for band in bands if band.label == "(1+2)/2"]
@@ -482,7 +483,7 @@ def test_dissertations_own_expansion_gives_the_same_bands():
     stiffness = (0.009 * MESH_STIFFNESS, 0.1 * MESH_STIFFNESS)
     at, _ = torsional(*stiffness, 1.0, 1e-5 * stiffness[1])
     bands = [
-        hsu.band_speeds(
+        band_speeds(
             SimpleNamespace(system=at), (250 * RPM, 900 * RPM), order=2, points=11, reach=0.0, expand=expand
         )
         for expand in (modal_expansion, lambda system, order: standard_form(system, order).expansion())
@@ -561,11 +562,11 @@ def test_bad_speeds():
 
     for wrong in ((0.0, 1.0), (2.0, 1.0), (1.0, math.nan), (1.0, math.inf)):
         with pytest.raises(ValueError, match="speeds must"):
-            hsu.band_speeds(SimpleNamespace(system=at), wrong)
+            band_speeds(SimpleNamespace(system=at), wrong)
     with pytest.raises(ValueError, match="reach must be 0 or greater, got -1"):
         hsu.resonance_bands(mathieu(0.1), reach=-1)
     with pytest.raises(ValueError, match="points must be at least 2, got 1"):
-        hsu.band_speeds(SimpleNamespace(system=at), (1.0, 2.0), points=1)
+        band_speeds(SimpleNamespace(system=at), (1.0, 2.0), points=1)
 
 
 def test_speeds_across_which_a_mode_stops_oscillating_are_refused():
@@ -574,4 +575,4 @@ def test_speeds_across_which_a_mode_stops_oscillating_are_refused():
         return PeriodicSystem(np.eye(2), np.diag([0.01, speed]), np.diag([1.0, 1.44]), loads, 1.0)
 
     with pytest.raises(ValueError, match="number of oscillating modes changes"):
-        hsu.band_speeds(SimpleNamespace(system=at), (1.0, 3.0), points=3)
+        band_speeds(SimpleNamespace(system=at), (1.0, 3.0), points=3)

@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from facegear.floquet.hsu import band_speeds, resonance_bands
+from facegear.floquet.band_speeds import band_speeds
+from facegear.floquet.hsu import resonance_bands
 from facegear.floquet.labels import Combination, combination, moving_parts
 from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
@@ -12,8 +13,9 @@ from facegear.geometry.drive import Drive
 from facegear.maps.tracing import tongues
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 TURN = 2.0 * np.pi
 

@@ -14,8 +14,8 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.geometry.drive import Drive
 from facegear.mechanics.cases import FIGURES
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad
 
 TRANSVERSE = Transverse(Body(Drive(26, 130, 3.175e-3), thickness_ratio=0.03), MeshLoad(1.0, 3e-6, 0.5))
 

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from facegear.floquet import collocation
-from facegear.floquet.collocation import UnsuitableSystemError
+from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.labels import Resonance, resonance
-from facegear.floquet.models import Excited
+from facegear.floquet.modified_models import Excited
 from facegear.floquet.multipliers import AdaptiveMagnus, Collocation, growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
 from facegear.floquet.piecewise import PiecewiseChebyshev

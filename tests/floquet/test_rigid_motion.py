@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from facegear.floquet.models import WithoutRigidMotion
+from facegear.floquet.modified_models import WithoutRigidMotion
 from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, rigid_motions, without_rigid_motion
 from facegear.floquet.piecewise import PiecewiseChebyshev

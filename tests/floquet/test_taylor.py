@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from facegear.floquet import taylor
-from facegear.floquet.collocation import UnsuitableSystemError
+from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.multipliers import AdaptiveMagnus, transition_matrices
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
 from facegear.floquet.piecewise import PiecewiseChebyshev

@@ -17,8 +17,8 @@ from facegear.geometry.misalignment import Misalignment
 from facegear.geometry.point_contact import UnloadedContact
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad
 
 CASE_ONE = Drive(26, 130, 3.175e-3, shaper_teeth=27)
 OBLIQUE = Drive(26, 130, 3.175e-3, shaft_angle=math.radians(75.0), shaper_teeth=28)

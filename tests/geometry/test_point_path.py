@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from facegear.geometry.action_path import ActionPath
 from facegear.geometry.drive import Drive
 from facegear.geometry.point_contact import UnloadedContact
 from facegear.geometry.point_path import PointPath
@@ -38,8 +39,8 @@ def test_path_on_its_own_clock():
 
 
 def test_the_contact_of_a_drive_is_found_once_for_its_paths(monkeypatch):
-    found, fault = [], UnloadedContact._fault
-    monkeypatch.setattr(UnloadedContact, "_fault", lambda contact: found.append(contact) or fault(contact))
+    found, fault = [], ActionPath.fault
+    monkeypatch.setattr(ActionPath, "fault", lambda contact: found.append(contact) or fault(contact))
     drive = replace(CASE_ONE, module=3.3e-3)
     for path in (point_contact(drive), PointPath(drive, 1.5)):
         path.pair_states(0.25)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from facegear.floquet.collocation import UnsuitableSystemError
+from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import AdaptiveMagnus, growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from facegear.drives.studies.gearbox import gearbox_study
-from facegear.floquet.models import Coordinate, Excited, WithoutRigidMotion, replace_parameter
+from facegear.floquet.models import Coordinate, replace_parameter
+from facegear.floquet.modified_models import Excited, WithoutRigidMotion
 from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
@@ -160,6 +161,24 @@ def test_a_resonance_that_is_found_at_one_of_the_speeds_is_one_peak():
     found = frequency_response(Narrow(1e-3, 1.0, WAVE), speeds, resolution=1e-2, jobs=1)
     assert found.peak_label.values.tolist() == ["1/1"]
     assert abs(found.peak_speed.values[0] - 1.0) < 1e-2
+
+
+def test_what_rises_up_to_a_border_of_instability_between_the_speeds_is_no_peak():
+    """Where a multiplier is 1 no motion repeats itself: as near as one looks, so large it is."""
+    model = Mathieu(depth=0.9, damping_ratio=0.1)
+    wave = PiecewiseChebyshev.fit(lambda x, _: np.cos(2.0 * np.pi * x), [0.0])
+    (tongue,) = tongues(model, (0.7, 1.3))
+    speeds = np.array([0.75, 0.85, 1.05, 1.15, 1.25])
+    assert 0.85 < tongue.lower < tongue.upper < 1.05
+    found = frequency_response(Excited(model, transmission_error=wave), speeds, jobs=1)
+    assert np.isfinite(found.force_rms).all()
+    assert (found.sizes["peak"], found.attrs["at_borders"]) == (0, 1)
+    near = [
+        steady_response(Excited(model, transmission_error=wave).system(tongue.upper * (1.0 + away)))
+        for away in (1e-4, 1e-6)
+    ]
+    rms = [np.sqrt(each.mean(lambda x, each=each: each.contact_forces(x) ** 2)) for each in near]
+    assert rms[1] > 50.0 * rms[0] > 500.0 * float(found.force_rms.max())
 
 
 def test_small_work_starts_no_processes(monkeypatch):

@@ -26,8 +26,9 @@ from facegear.mechanics.classical_pairs import CoupledPair
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 TURN = 2.0 * math.pi
 BOX = (

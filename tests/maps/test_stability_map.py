@@ -25,8 +25,9 @@ from facegear.mechanics import cases
 from facegear.mechanics.cases import FIGURES
 from facegear.mechanics.classical_pairs import GearPair
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 
 @pytest.fixture(scope="module", autouse=True)

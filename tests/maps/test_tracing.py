@@ -18,8 +18,9 @@ from facegear.maps import parallel, tracing
 from facegear.maps.scanning import Scan, scan_of
 from facegear.maps.tracing import borders, search_seconds, tongues
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s, rpm
+from facegear.support.parameters import rad_per_s, rpm
 from tests.comparing import agree
 
 TURN = 2.0 * np.pi

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from facegear.floquet.continuation import Following, doubled, followed
+from facegear.floquet.arc_length import Following
+from facegear.floquet.continuation import doubled, followed
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.orbits import periodic_orbit
 from facegear.floquet.piecewise import PiecewiseChebyshev

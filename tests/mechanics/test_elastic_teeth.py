@@ -7,8 +7,8 @@ from scipy.integrate import quad
 
 from facegear.geometry.drive import Drive
 from facegear.mechanics.elastic_teeth import GearTooth, PinionTooth, local_compliance
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.slices import Slices
-from facegear.support.parameters import STEEL
 
 DRIVE = Drive(26, 130, 3.175e-3, shaper_teeth=27)
 SLICES = Slices(DRIVE)

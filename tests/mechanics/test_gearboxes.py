@@ -15,7 +15,7 @@ from facegear.mechanics.gearboxes import (
     HIGHEST_SPEED_RPM,
     LOAD_INERTIA_RATIO,
 )
-from facegear.support.parameters import STEEL
+from facegear.mechanics.properties import STEEL
 
 # What the captions print, SI: km, k1, k2 and cm/km, c1/k1, c2/k2; None where swept or not given.
 CAPTIONS = {

@@ -13,8 +13,9 @@ from facegear.floquet.radau import Radau
 from facegear.maps.sensitivity import border_derivatives
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.heavy_shafts import HeavyShafts
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.rods import shear_modulus
-from facegear.support.parameters import STEEL, rad_per_s
+from facegear.support.parameters import rad_per_s
 from tests.independent.shafts_by_elements import gearbox, growth_rate, reduced_gearbox
 from tests.independent.torsional_switching import numbers_of
 

@@ -111,7 +111,7 @@ def test_a_line_of_which_nothing_is_left_carries_nothing(law):
     s = np.random.default_rng(7).uniform(-4e-3, 3e-3, 4001)
     ages = np.zeros_like(s)
     contact = LoadedContact(CUT, 20.0, compliance=law)
-    for force in contact._law.force(np.full(s.shape, 1e-5), Lines(s, s, ages)):
+    for force in contact.cycle.law.force(np.full(s.shape, 1e-5), Lines(s, s, ages)):
         assert np.count_nonzero(force) == 0
 
 
@@ -130,7 +130,7 @@ def test_stiffness_is_the_slope_of_force_against_approach(law):
     more, less = (LoadedContact(CUT, 50.0 + change, compliance=law) for change in (1e-3, -1e-3))
     for fraction in (0.2, 0.6):
         # The same rotation, not the same time since a pair began to be pressed.
-        ages = [fraction + contact._mesh[0] - other._mesh[0] for other in (more, less)]
+        ages = [fraction + contact.cycle.first - other.cycle.first for other in (more, less)]
         approach = [other.transmission_error(age) for other, age in zip((more, less), ages, strict=True)]
         slope = (more.force - less.force) / (approach[0] - approach[1])
         assert float(contact.mesh_stiffness(fraction)) == pytest.approx(float(slope), rel=1e-6)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 import facegear as fg
-from facegear.floquet.hsu import band_speeds
+from facegear.floquet.band_speeds import band_speeds
 from facegear.floquet.models import parameter_names, replace_parameter
 from facegear.floquet.multipliers import growth_rate, multipliers
 from facegear.geometry.kinematics import ContactPath

@@ -15,8 +15,8 @@ from facegear.mechanics.elastic_teeth import GearTooth, PinionTooth
 from facegear.mechanics.loaded_contact import LoadedContact
 from facegear.mechanics.paths import loaded_contact
 from facegear.mechanics.plate_compliance import PlateCompliance
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.slices import Slices
-from facegear.support.parameters import STEEL
 
 DRIVE = Drive(26, 130, 3.175e-3, shaper_teeth=27)
 SLICES = Slices(DRIVE)
@@ -32,7 +32,7 @@ def contact(torque, compliance="plate", **fields):
 def of_law(torque, law):
     """Contact under a law that is made by hand."""
     made = LoadedContact(DRIVE, torque, compliance="plate")
-    made.__dict__["_law"] = law
+    made.__dict__["cycle"] = replace(made.cycle, law=law)
     return made
 
 
@@ -44,7 +44,9 @@ def test_without_plates_slices_give_way_each_for_itself(torque):
     inner, outer = SLICES.ends(AGES)
     lines = Lines(inner, outer, AGES)
     for approach in (1e-8, 1e-6, 1e-5, 1e-4):
-        one, other = (either.force(np.full(AGES.shape, approach), lines) for either in (law, slices._law))
+        one, other = (
+            either.force(np.full(AGES.shape, approach), lines) for either in (law, slices.cycle.law)
+        )
         assert_allclose(one, other, rtol=1e-12, atol=1e-12 * other[0].max())
     beds = of_law(torque, law)
     assert_allclose(beds.contact_ratio, slices.contact_ratio, rtol=1e-11)
@@ -67,9 +69,9 @@ def test_without_plates_slices_give_way_each_for_itself(torque):
 def test_pairs_carry_the_torque_and_press_without_sticking_or_sinking_in(torque):
     plates = contact(torque)
     assert_allclose(plates.pairs(TIMES).force.sum(axis=0), plates.force, rtol=1e-10)
-    ages = TIMES + plates._mesh[0]
-    lines = plates._lines(plates._all_pairs(ages))
-    approach = np.broadcast_to(plates._approach(ages), lines.inner.shape)
+    ages = TIMES + plates.cycle.first
+    lines = plates.cycle.lines(plates.cycle.all_pairs(ages))
+    approach = np.broadcast_to(plates.cycle.approach(ages), lines.inner.shape)
     inner, outer = lines.inner[..., np.newaxis], lines.outer[..., np.newaxis]
     reach = np.sqrt(approach)[..., np.newaxis]
     near = np.clip(inner, -reach, reach), np.clip(outer, -reach, reach)
@@ -78,13 +80,16 @@ def test_pairs_carry_the_torque_and_press_without_sticking_or_sinking_in(torque)
     s = np.sort(
         np.concatenate([inner + (outer - inner) * steps, near[0] + (near[1] - near[0]) * steps], axis=-1)
     )
-    pressure, overlap = plates._law.pressure(approach, lines, s), plates._law.overlap(approach, lines, s)
+    pressure, overlap = (
+        plates.cycle.law.pressure(approach, lines, s),
+        plates.cycle.law.overlap(approach, lines, s),
+    )
     there = np.broadcast_to(inner < outer, s.shape)
     assert pressure.min() >= 0.0
     # Next to a free end both are 0 to rounding.
     assert overlap[there & (pressure == 0.0)].max(initial=-1.0) < 1e-12 * approach.max()
     assert overlap[pressure > 0.0].min() > 0.0
-    force, _ = plates._law.force(approach, lines)
+    force, _ = plates.cycle.law.force(approach, lines)
     assert_allclose(np.trapezoid(pressure, SLICES.position(s), axis=-1), force, atol=1e-3 * plates.force)
 
 
@@ -96,9 +101,9 @@ def test_an_end_that_newtons_rule_sends_to_and_fro_settles():
 
 @pytest.mark.parametrize("torque", [1.0, 100.0])
 def test_stiffness_is_the_growth_of_force(torque):
-    law, ages = contact(torque)._law, np.linspace(0.2, 3.0, 15)
+    law, ages = contact(torque).cycle.law, np.linspace(0.2, 3.0, 15)
     inner, outer = SLICES.ends(ages)
-    lines, approach = Lines(inner, outer, ages), contact(torque)._approach(ages)
+    lines, approach = Lines(inner, outer, ages), contact(torque).cycle.approach(ages)
     step = 1e-4 * approach
     more, less = (law.force(approach + sign * step, lines)[0] for sign in (1.0, -1.0))
     stiffness = law.force(approach, lines)[1]
@@ -107,8 +112,8 @@ def test_stiffness_is_the_growth_of_force(torque):
 
 def test_series_hold_what_each_instant_gives():
     plates = contact(100.0)
-    ages = TIMES + plates._mesh[0]
-    assert_allclose(plates.transmission_error(TIMES), plates._approach(ages), rtol=1e-11)
+    ages = TIMES + plates.cycle.first
+    assert_allclose(plates.transmission_error(TIMES), plates.cycle.approach(ages), rtol=1e-11)
 
 
 def test_between_slices_and_rigid_teeth():
@@ -119,7 +124,7 @@ def test_between_slices_and_rigid_teeth():
     """
     for torque in (1.0, 100.0, 1000.0):
         plates = contact(torque)
-        stiffness = plates._law.pair_stiffness
+        stiffness = plates.cycle.law.pair_stiffness
         soft, rigid = (of_law(torque, law(SLICES, stiffness)) for law in (SliceCompliance, PairCompliance))
         assert rigid.contact_ratio < plates.contact_ratio <= soft.contact_ratio
         errors = [law.transmission_error(TIMES).mean() for law in (rigid, plates, soft)]
@@ -135,14 +140,14 @@ def test_lines_pressed_from_end_to_end_keep_their_stiffness():
     assert_allclose(heavy.mesh_stiffness(TIMES), heavier.mesh_stiffness(TIMES), rtol=1e-9)
     # As the mean over lines says, weighted by length: pairs one period apart are in mesh together.
     lengths = np.subtract(
-        *(SLICES.position(end) for end in heavy._lines(heavy._all_pairs(TIMES))[1::-1])
+        *(SLICES.position(end) for end in heavy.cycle.lines(heavy.cycle.all_pairs(TIMES))[1::-1])
     ).sum(axis=0)
     mean = heavy.mesh_stiffness(np.linspace(0.0, 1.0, 400, endpoint=False)).mean()
-    assert_allclose(mean * DRIVE.face_width / lengths.mean(), heavy._law.pair_stiffness, rtol=2e-3)
+    assert_allclose(mean * DRIVE.face_width / lengths.mean(), heavy.cycle.law.pair_stiffness, rtol=2e-3)
 
 
 def test_bodies_make_the_teeth_softer_as_a_factor():
-    stiffness = [contact(1.0, correction_factor=factor)._law.pair_stiffness for factor in (0.25, 1.0)]
+    stiffness = [contact(1.0, correction_factor=factor).cycle.law.pair_stiffness for factor in (0.25, 1.0)]
     assert_allclose(stiffness[1] / stiffness[0], 4.0, rtol=1e-12)
     # All lengths scale with the approach: half of the factor is twice the torque.
     one, other = contact(100.0, correction_factor=0.5), contact(50.0, correction_factor=0.25)
@@ -168,11 +173,11 @@ def test_an_edge_that_does_not_reach_to_the_pitch_circle_leaves_a_plate(gear_tee
 def test_more_polynomials_change_little():
     # The error falls as a power of their number: across a line of load the shear jumps.
     ages, plates = np.linspace(0.0, 0.9, 5), contact(100.0)
-    lines, near = plates._lines(plates._all_pairs(ages)), plates._approach(ages)
+    lines, near = plates.cycle.lines(plates.cycle.all_pairs(ages)), plates.cycle.approach(ages)
 
     def approach(*degrees):
         teeth = PinionTooth(SLICES, STEEL, *degrees), GearTooth(SLICES, STEEL, *degrees)
-        return replace(plates._law, teeth=teeth).equilibrium(plates.force, near, lines)
+        return replace(plates.cycle.law, teeth=teeth).equilibrium(plates.force, near, lines)
 
     found = np.array([approach(*n) for n in ((4, 6), (6, 12), (8, 20))])
     errors = np.abs(found[:-1] / found[-1] - 1.0).max(axis=1)
@@ -186,7 +191,7 @@ def test_more_polynomials_change_little():
 )
 def test_pressure_is_that_of_the_law(misalignment):
     plates = contact(100.0, **({} if misalignment == ALIGNED else {"misalignment": misalignment}))
-    ends = plates._law.teeth[0].plate.ends
+    ends = plates.cycle.law.teeth[0].plate.ends
     u = np.linspace(*ends, 2001)
     carried = np.trapezoid(plates.pressure(0.3, u), u, axis=-1)
     assert_allclose(carried, plates.pairs(0.3).force, atol=2e-3 * plates.force)

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics.exact_rods import count_below, exact_frequencies
+from facegear.mechanics.properties import STEEL
 from facegear.mechanics.rods import (
     Rod,
     Shaft,
@@ -16,7 +17,6 @@ from facegear.mechanics.rods import (
     shear_wave_speed,
     with_mass,
 )
-from facegear.support.parameters import STEEL
 from tests.independent.shafts_by_elements import craig_bampton, rod
 
 WAVE = shear_wave_speed(STEEL)

@@ -27,9 +27,11 @@ from facegear.mechanics.disk import (
     reference_stiffness,
     shape_vector,
 )
+from facegear.mechanics.pinions_on_disk import nominal_pinion_mass
 from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import Transverse, contact_shape, nominal_pinion_mass, rotated
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.mechanics.properties import MeshLoad
+from facegear.mechanics.transverse import Transverse, contact_shape, rotated
+from facegear.support.parameters import rad_per_s
 from facegear.symbolic import galerkin
 from tests.independent.complex_galerkin import ComplexDisk, Pinion
 from tests.independent.complex_galerkin import multipliers as complex_multipliers

@@ -13,9 +13,9 @@ from facegear.mechanics.classical_pairs import GearPair
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.disk import shape_vector, unit_shape
 from facegear.mechanics.gearboxes import FIGURES
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad
 
 LOAD = MeshLoad(1.0, 3e-6, 1.0)
 BOX = FIGURES["7.12a"].gearbox.in_si

@@ -40,8 +40,9 @@ from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.inplane import EdgeLoadStress
+from facegear.mechanics.properties import STEEL, MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import STEEL, MeshLoad, rad_per_s, rpm, watt
+from facegear.support.parameters import rad_per_s, rpm, watt
 
 SCALARS = (
     *(np.int8, np.int16, np.int32, np.int64, np.uint8, np.uint16, np.uint32, np.uint64),

@@ -17,11 +17,11 @@ from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.paths import loaded_contact
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import STEEL, Material, MeshLoad
 from facegear.mechanics.sharing import shared_load
 from facegear.mechanics.torsional import Gearbox, Torsional
 from facegear.mechanics.transverse import Transverse
 from facegear.mechanics.two_gears import TwoGears
-from facegear.support.parameters import STEEL, Material, MeshLoad
 
 LOAD = MeshLoad(1.0, 3e-6, 1.0)
 SPRUNG = MeshOscillator(CASE_1, LOAD, (0.0, 1.0), mesh_stiffness=1.6e8, mesh_damping=1e-5)

@@ -7,7 +7,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import facegear as fg
-from facegear.floquet.hsu import band_speeds
+from facegear.floquet.band_speeds import band_speeds
 from facegear.maps.closing import largest_growth
 from facegear.maps.sensitivity import sensitivity
 from facegear.mechanics.classical_pairs import GearPair

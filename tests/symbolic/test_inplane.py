@@ -5,16 +5,16 @@ import pytest
 import sympy as sp
 
 from facegear.mechanics.inplane import harmonic_field
-from facegear.symbolic import edge_stiffness
+from facegear.symbolic import edge_stiffness, lame, michell
 from facegear.symbolic import inplane as symbolic
 
 
 def test_potentials_solve_the_equations_of_motion():
-    assert symbolic.potential_residuals() == (0, 0)
+    assert lame.potential_residuals() == (0, 0)
 
 
 def test_characteristic_equation_and_ratios_are_the_printed_ones():
-    pair, (characteristic, s_k1, s_k2) = symbolic.bessel_pair(), symbolic.printed_pair()
+    pair, (characteristic, s_k1, s_k2) = lame.bessel_pair(), lame.printed_pair()
     assert sp.simplify(pair.characteristic - characteristic) == 0
     assert sp.simplify(1 / pair.over_first + s_k1) == 0
     assert sp.simplify(1 / pair.over_second + s_k2) == 0
@@ -23,14 +23,14 @@ def test_characteristic_equation_and_ratios_are_the_printed_ones():
 @pytest.mark.parametrize("harmonic", [0, 1, 2])
 def test_printed_potentials_have_no_remainder(harmonic):
     values = {symbolic.r: 0.4, symbolic.theta: 0.7, symbolic.Omega: 1.3, symbolic.nu: 0.3}
-    characteristic = symbolic.printed_pair()[0].subs({symbolic.k: harmonic} | values)
+    characteristic = lame.printed_pair()[0].subs({symbolic.k: harmonic} | values)
     if harmonic > 1:
         roots = sorted(z for z in sp.nroots(characteristic, n=30) if z.is_real and z > 0)
         names = sp.symbols("beta_k1 beta_k2", positive=True)
         values |= dict(zip(names, roots, strict=True))
-    for Phi, Psi in symbolic.basis_of_potentials(harmonic):
+    for Phi, Psi in lame.basis_of_potentials(harmonic):
         parts = Phi * sp.sin(harmonic * symbolic.theta), Psi * sp.cos(harmonic * symbolic.theta)
-        residuals = symbolic.equations_of_motion(*symbolic.from_potentials(*parts))
+        residuals = symbolic.equations_of_motion(*lame.from_potentials(*parts))
         size = abs(sp.N(sum(parts).subs(values)))
         assert all(abs(sp.N(part.subs(values))) < 1e-10 * (1 + size) for part in residuals)
 
@@ -50,7 +50,7 @@ def test_collocation_solves_the_derived_system(harmonic):
 
 def test_michells_terms_are_in_equilibrium_and_fit_hookes_law():
     for harmonic in (1, 3):
-        for term in symbolic.michell_terms(harmonic):
+        for term in michell.michell_terms(harmonic):
             radial = sp.diff(term.S, symbolic.r) + (term.S - term.H - harmonic * term.T) / symbolic.r
             shear = sp.diff(term.T, symbolic.r) + (2 * term.T + harmonic * term.H) / symbolic.r
             assert sp.simplify(radial) == 0
@@ -59,9 +59,9 @@ def test_michells_terms_are_in_equilibrium_and_fit_hookes_law():
 
 def test_potentials_need_speed_and_digits():
     with pytest.raises(ZeroDivisionError, match="spin = 0"):
-        symbolic.bessel_stresses(2, [0.5], 0.0, 0.3, 0.2, 15)
-    few = symbolic.bessel_stresses(1, [0.5], 1e-4, 0.3, 0.2, 15)
-    many = symbolic.bessel_stresses(1, [0.5], 1e-4, 0.3, 0.2, 40)
+        lame.bessel_stresses(2, [0.5], 0.0, 0.3, 0.2, 15)
+    few = lame.bessel_stresses(1, [0.5], 1e-4, 0.3, 0.2, 15)
+    many = lame.bessel_stresses(1, [0.5], 1e-4, 0.3, 0.2, 40)
     assert abs(few[0][0] - many[0][0]) > 1e-9
 
 

@@ -52,7 +52,7 @@ def test_a_copied_example_brings_all_its_names_along(name):
 def test_name_is_followed_from_its_module_on():
     assert found("facegear.floquet.multipliers.with_method")[-1] is not None
     assert found("facegear.floquet.periodic.PeriodicSystem.fourier")[-1] is fg.PeriodicSystem.fourier
-    assert found("facegear.support.parameters.MeshLoad.stiffness")  # a field without default
+    assert found("facegear.mechanics.properties.MeshLoad.stiffness")  # a field without default
     assert found("facegear.floquet.multipliers.no_such_method") == []
     assert found("no_such_package.name") == []
 
@@ -61,8 +61,8 @@ def test_short_name_is_looked_for_in_the_class_and_in_the_module_of_its_docstrin
     near = candidates("jumps", "facegear.PeriodicSystem.state_jumps")
     assert near[:2] == ["facegear.floquet.periodic.PeriodicSystem.jumps", "facegear.floquet.periodic.jumps"]
     assert (
-        candidates("band_speeds", "facegear.floquet.hsu.resonance_bands")[0]
-        == "facegear.floquet.hsu.band_speeds"
+        candidates("block_bands", "facegear.floquet.hsu.resonance_bands")[0]
+        == "facegear.floquet.hsu.block_bands"
     )
 
 

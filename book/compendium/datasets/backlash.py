@@ -10,8 +10,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from facegear.floquet.arc_length import Following
+from facegear.floquet.branches import Branch
 from facegear.floquet.clearance import ClearanceSystem
-from facegear.floquet.continuation import Branch, Following, doubled, followed, orbits_at
+from facegear.floquet.continuation import doubled, followed, orbits_at
 from facegear.floquet.orbits import Orbit, periodic_orbit
 from facegear.floquet.transients import settled
 from facegear.mechanics.backlash import Backlash

@@ -9,7 +9,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from facegear.design.identification import Survey, bound_together, drawn
+from facegear.design.identification import Survey, bound_together
+from facegear.design.measurements import drawn
 from facegear.design.tooth_search import SlotFilter, share_interval, without_common
 from facegear.floquet.hill import apart, exponents
 from facegear.floquet.periodic import PeriodicSystem

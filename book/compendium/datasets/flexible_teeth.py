@@ -12,15 +12,19 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.transverse import tongue_table
-from facegear.floquet.hsu import band_speeds
-from facegear.floquet.models import Excited, Model
+from facegear.floquet.band_speeds import band_speeds
+from facegear.floquet.models import Model, parameter_path
+from facegear.floquet.modified_models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.maps.parallel import computed
 from facegear.maps.response_map import frequency_response
+from facegear.maps.rows import Rows
 from facegear.maps.sensitivity import sensitivity
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import Tongue
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rad_per_s
+from facegear.support.types import FloatArray
 
 _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 
@@ -46,21 +50,36 @@ def growth_maps(
     xarray.Dataset
         ``growth_rate`` [1/s] over (model, value, speed).
     """
-    shown = np.asarray(speeds_rpm, dtype=float)
-    charts = [
-        stability_map(model, np.asarray(rad_per_s(shown)), parameter, values, jobs=jobs).values
-        for model in models.values()
-    ]
+    shown, taken = np.asarray(speeds_rpm, dtype=float), np.asarray(values, dtype=float)
+    charts_of = _rows if taken.size == 1 else _maps
+    charts = charts_of(list(models.values()), np.asarray(rad_per_s(shown)), parameter, taken, jobs)
     return xr.Dataset(
         {"growth_rate": _growth(("model", "value", "speed"), charts, "Growth rate")},
         {
             "model": np.arange(len(models)),
-            "value": np.asarray(values, dtype=float),
+            "value": taken,
             "speed": shown,
             "model_name": text("model", list(models), "Model"),
         },
         {"parameter": parameter},
     )
+
+
+def _maps(
+    models: Sequence[Model], speeds: FloatArray, parameter: str, values: FloatArray, jobs: int
+) -> list[FloatArray]:
+    """Growth rates [1/s], (value, speed) of each model."""
+    return [stability_map(model, speeds, parameter, values, jobs=jobs).values for model in models]
+
+
+def _rows(
+    models: Sequence[Model], speeds: FloatArray, parameter: str, values: FloatArray, jobs: int
+) -> list[FloatArray]:
+    """As :func:`_maps` of one value: along speed, where a map would go along the parameter."""
+    at, (value,) = tuple(speeds.tolist()), values.tolist()
+    tasks = [Rows(model, parameter_path(model, parameter), (value,), at, None) for model in models]
+    found = dict(computed(tasks, "growth rates", jobs, None, None))
+    return [np.log(radii) / periods for radii, periods in (found[number] for number in range(len(tasks)))]
 
 
 def growth_rows(

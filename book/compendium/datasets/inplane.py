@@ -13,7 +13,8 @@ from facegear.mechanics.inplane import EdgeLoadStress, harmonic_field, spin_per_
 from facegear.mechanics.plate import Body
 from facegear.support.labelled import variable
 from facegear.support.parameters import finite_array, rad_per_s
-from facegear.symbolic import inplane as symbolic
+from facegear.symbolic.lame import bessel_stresses
+from facegear.symbolic.michell import michell_stresses
 
 _STRESSES = {"radial": "σ_rr", "shear": "σ_rθ", "hoop": "σ_θθ"}
 
@@ -218,15 +219,15 @@ def closed_forms(body: Body, harmonics: Sequence[int], speeds_rpm: ArrayLike, di
     michell = np.empty(len(harmonics))
     for i, k in enumerate(harmonics):
         rest = harmonic_field(c, nu, 0.0, k).stresses(x)[:, 0]
-        michell[i] = np.abs(rest - symbolic.michell_stresses(k, x.tolist(), nu, c)).max()
+        michell[i] = np.abs(rest - michell_stresses(k, x.tolist(), nu, c)).max()
         for j, speed in enumerate(speeds):
             spin = float(rad_per_s(speed)) * spin_per_speed(body)
-            exact = np.array(symbolic.bessel_stresses(k, x.tolist(), spin, nu, c, digits=40))
+            exact = np.array(bessel_stresses(k, x.tolist(), spin, nu, c, digits=40))
             found = harmonic_field(c, nu, spin, k).stresses(x)[:, 0]
             collocation[i, j] = np.abs(found - exact).max()
             effect[i, j] = np.abs(found - rest).max()
             try:
-                few = np.array(symbolic.bessel_stresses(k, x.tolist(), spin, nu, c, digits=digits))
+                few = np.array(bessel_stresses(k, x.tolist(), spin, nu, c, digits=digits))
             except ZeroDivisionError:
                 continue
             potentials[i, j] = np.abs(few - exact).max()

@@ -16,7 +16,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize_scalar
 
-from facegear.floquet.hsu import SpeedBand, band_speeds
+from facegear.floquet.band_speeds import SpeedBand, band_speeds
 from facegear.floquet.modal import ModalExpansion, standard_form
 from facegear.floquet.models import replace_parameter, value_of
 from facegear.floquet.periodic import PeriodicSystem

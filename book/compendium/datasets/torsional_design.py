@@ -193,7 +193,7 @@ PARAMETERS = (
 SYMBOLS = ("$J_1$", "$J_2$", "$J_o$", "$k_m$", "$k_1$", "$k_2$", "$c_m$", "$c_1$", "$c_2$")
 
 
-def levers(cases: Mapping[str, Torsional], speeds_rpm: tuple[float, float]) -> xr.Dataset:
+def sensitivities(cases: Mapping[str, Torsional], speeds_rpm: tuple[float, float]) -> xr.Dataset:
     """Sensitivity of every tongue to each parameter of the gearbox.
 
     Parameters

@@ -23,7 +23,7 @@ def interference(curves: xr.Dataset, titles: Sequence[str], traced: Sequence[xr.
     Parameters
     ----------
     curves : xarray.Dataset
-        From :func:`compendium.datasets.pinions.interference_curves`.
+        From :func:`compendium.datasets.cancellation.interference_curves`.
     titles : sequence of str
         One a positioning angle.
     traced : sequence of xarray.Dataset
@@ -62,7 +62,7 @@ def weak_tongues(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`compendium.datasets.pinions.weak_tongues`; the weakest load is drawn.
+        From :func:`compendium.datasets.cancellation.weak_tongues`; the weakest load is drawn.
     """
     figure, axes = panels(1, 2, 3.7)
     end = float(data["phasing_sum"].max()) * 1.08
@@ -92,7 +92,7 @@ def two_pinion_chart(data: xr.Dataset, pitch: float) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`compendium.datasets.pinions.two_pinion_chart`.
+        From :func:`compendium.datasets.cancellation.two_pinion_chart`.
     pitch : float
         Angular pitch [°], ticks above the axes.
     """
@@ -124,7 +124,7 @@ def array_chart(data: xr.Dataset) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`compendium.datasets.pinions.array_chart`.
+        From :func:`compendium.datasets.cancellation.array_chart`.
     """
     layouts = data["layout_name"].values.tolist()
     count = data.sizes["gear_teeth"]

@@ -33,7 +33,7 @@ def levers(data: xr.Dataset, symbols: Sequence[str], what: What) -> Figure:
     Parameters
     ----------
     data : xarray.Dataset
-        From :func:`compendium.datasets.levers.levers` or :func:`compendium.datasets.torsional_design.levers`.
+        From :func:`compendium.datasets.levers.levers` or :func:`compendium.datasets.torsional_design.sensitivities`.
     symbols : sequence of str
         Symbols of the variables.
     what : {"centre_change", "width_change", "growth_change"}

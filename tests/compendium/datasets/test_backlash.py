@@ -7,7 +7,8 @@ from scipy.stats import binomtest
 
 from compendium.datasets import backlash as arrays
 from compendium.plotting import backlash as draw
-from facegear.floquet.continuation import Following, followed
+from facegear.floquet.arc_length import Following
+from facegear.floquet.continuation import followed
 from facegear.floquet.orbits import periodic_orbit
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import FIGURES

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from compendium.datasets import design as design_arrays
+from compendium.datasets import design_variants
 from compendium.plotting import design as draw
 from facegear.design.body import BodyDesign
 from facegear.design.teeth import constant_diametral_pitch, constant_pitch_radius, root_stress
@@ -12,8 +13,9 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.maps.lobes import CriticalThickness, Lobe
 from facegear.mechanics.disk import disk_modes, shape_vector
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 DRIVE = constant_diametral_pitch(25)
 MODEL = Transverse(Body(DRIVE, 0.04), MeshLoad(stiffness=0.8, damping=1e-5, mass=1.0))
@@ -60,7 +62,7 @@ def test_family_of_bodies():
 
 
 def test_variants_differ_where_they_say():
-    found = design_arrays.variants(MODEL)
+    found = design_variants.variants(MODEL)
     system = {name: model.system(50.0) for name, model in found.items()}
     own = system.pop("as in chapters 3 and 4").loads[0]
     mass = system["base radius in the nominal mass"].loads[0].mass
@@ -90,7 +92,7 @@ def test_lobe_ends_like_a_parabola():
 
 def test_critical_of_variants_and_tips():
     low, high = rad_per_s([150.0, 300.0]).tolist()
-    data = design_arrays.critical_of_variants({"own": MODEL}, low, [high], (0.036, 0.039), jobs=1)
+    data = design_variants.critical_of_variants({"own": MODEL}, low, [high], (0.036, 0.039), jobs=1)
     assert data["variant_name"].values.tolist() == ["own"]
     assert data["highest_rpm"].values == pytest.approx([300.0])
     assert float(data["critical_ratio"][0, 0]) == pytest.approx(0.0375, abs=1.5e-4)
@@ -102,7 +104,7 @@ def test_critical_of_variants_and_tips():
 @pytest.mark.slow
 def test_tips_in_windows_are_those_of_an_independent_route():
     # data/anchors/ch04_figure_4_10.yaml: complex exponentials and DOP853
-    data = design_arrays.tips_in_windows(
+    data = design_variants.tips_in_windows(
         {"printed": MODEL}, [(164.0, 192.0), (740.0, 860.0)], [0.0404], jobs=1
     )
     np.testing.assert_allclose(data["tip_ratio"], [[0.0376137, 0.0394525]], rtol=0, atol=2e-5)

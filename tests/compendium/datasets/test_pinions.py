@@ -6,6 +6,7 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
+from compendium.datasets import cancellation
 from compendium.datasets import pinions as arrays
 from compendium.plotting import cancellation as charts
 from compendium.plotting import pinions as draw
@@ -80,11 +81,11 @@ def test_tooth_counts_find_the_tongues_of_each(tmp_path):
 def test_small_arrays_survive_their_files_and_are_drawn(chart, tongues, tmp_path):
     before = dict(mpl.rcParams)
     relation = arrays.phase_relation(EXAMPLE_B.body.drive, 10.0, 11)
-    two = arrays.two_pinion_chart(155, [-1, 0, 1], np.linspace(90, 95, 7))
-    several = arrays.array_chart([155, 156], {"2 equal": [0, 180], "X": [0, 70, 180, 250]}, [-1, 0, 1])
+    two = cancellation.two_pinion_chart(155, [-1, 0, 1], np.linspace(90, 95, 7))
+    several = cancellation.array_chart([155, 156], {"2 equal": [0, 180], "X": [0, 70, 180, 250]}, [-1, 0, 1])
     pair = {"a pair": WavePair(Wave(0, 2), Wave(1, 0))}
-    weak = arrays.weak_tongues(EXAMPLE_B, pair, [(0.0, 97.8)], (0.01,), jobs=1)
-    curves = arrays.interference_curves(EXAMPLE_B, [51], [0.0, 0.5], {(1, 1): 190.0, (1, 2): 197.0})
+    weak = cancellation.weak_tongues(EXAMPLE_B, pair, [(0.0, 97.8)], (0.01,), jobs=1)
+    curves = cancellation.interference_curves(EXAMPLE_B, [51], [0.0, 0.5], {(1, 1): 190.0, (1, 2): 197.0})
     for dataset in (relation, two, several, weak, curves):
         check_round_trip(dataset, tmp_path)
     assert two["remaining"].sel(wave_number=0, total_angle=90.0) == pytest.approx(

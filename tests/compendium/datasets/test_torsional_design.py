@@ -19,9 +19,10 @@ from facegear.maps.sensitivity import border_derivatives
 from facegear.maps.tracing import tongues
 from facegear.mechanics.gearboxes import DRIVE, FIGURES
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
 from facegear.support.labelled import label_rows
-from facegear.support.parameters import MeshLoad, rad_per_s, rpm
+from facegear.support.parameters import rad_per_s, rpm
 from tests.independent.torsional_switching import numbers_of, spectral_radius
 
 LIGHT = replace_parameter(FIGURES["7.12a"].model(), "input_damping", 1e-6)

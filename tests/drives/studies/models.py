@@ -4,9 +4,9 @@ from facegear.mechanics import cases
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.spreads import PitchPoint
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import MeshLoad
 
 THREE = Transverse(
     Body(cases.CASE_2.drive, 0.05),

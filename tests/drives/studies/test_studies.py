@@ -19,11 +19,11 @@ from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
+from facegear.mechanics.properties import Material, MeshLoad
 from facegear.mechanics.sharing import shared_load
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.torsional import Torsional
 from facegear.mechanics.transverse import Transverse
-from facegear.support.parameters import Material, MeshLoad
 from tests.drives.studies.models import THREE
 
 OWN_DRIVE = Drive(30, 120, 3e-3, pressure_angle=math.radians(20.0), shaft_angle=math.radians(85.0))
@@ -53,6 +53,7 @@ BY_RULE = Contact(
         (teeth_study, ON_SPRINGS),
         (teeth_study, replace(ON_SPRINGS, contact=BY_RULE, pinion_angles=(0.4,))),
         (teeth_study, replace(ON_SPRINGS, force=DrivingForce(2e5, 400.0, "dead", 6))),
+        (damage_study, gearboxes.FIGURES["7.13a"].model()),
     ],
 )
 def test_what_has_no_control_stays_as_the_model_has_it(study, model):
@@ -100,17 +101,20 @@ def test_what_has_no_control_stays_as_the_model_has_it(study, model):
             "gearbox of the model must be a ProportionalGearbox",
         ),
         (shafts_study, gearboxes.FIGURES["7.12a"].model(), TypeError, "model must be a HeavyShafts"),
-        (
-            damage_study,
-            gearboxes.FIGURES["7.12a"].model(),
-            TypeError,
-            "gearbox of the model must be a Gearbox",
-        ),
+        (damage_study, ON_SPRINGS, TypeError, "model must be a Torsional"),
     ],
 )
 def test_a_model_that_controls_would_change_is_refused(study, model, error, message):
     with pytest.raises(error, match=message):
         study(model)
+
+
+def test_what_is_lost_of_a_stiffness_leaves_the_damping_of_any_gearbox():
+    given = gearboxes.FIGURES["7.13a"].model()
+    study = damage_study(given)
+    found, box = study.model(study.settings({"input_stiffness": 50.0})).gearbox, given.gearbox.in_si
+    assert found.input_stiffness == pytest.approx(0.5 * box.input_stiffness, rel=1e-14)
+    assert found.input_damping == box.input_damping
 
 
 @pytest.mark.parametrize("study", [drive_study, teeth_study, shafts_study])

@@ -10,7 +10,8 @@ from facegear.drives.studies.drive import drive_study
 from facegear.drives.studies.study import Choice, Quantity, Study, shown_only
 from facegear.mechanics import cases
 from facegear.mechanics.classical import Meissner
-from facegear.support.parameters import MeshLoad, rad_per_s
+from facegear.mechanics.properties import MeshLoad
+from facegear.support.parameters import rad_per_s
 
 
 def test_axes_are_in_si_units_and_cover_the_range():

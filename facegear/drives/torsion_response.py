@@ -1,0 +1,142 @@
+"""Forced response of a gearbox in torsion: the load of a tooth pair in words, and as arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from facegear.support.labelled import text, variable
+from facegear.support.parameters import rpm
+
+AT_BORDERS = " Closer to a border of instability it can be larger, without a bound."
+"""What is said where speeds without a steady response lie among those looked at."""
+
+_STATISTICS = ("mean", "rms", "lowest", "highest")
+
+
+def largest_load(response: xr.Dataset) -> tuple[float, float]:
+    """Find the largest force of a tooth pair, at a speed looked at or at a peak between them.
+
+    Parameters
+    ----------
+    response : xarray.Dataset
+        From :func:`facegear.maps.response_map.frequency_response`, with a response at one speed or more.
+
+    Returns
+    -------
+    force, speed : float
+        [N], [rad/s].
+    """
+    known = response.dropna("speed", subset=["force_highest"])
+    forces = np.append(known["force_highest"].max("load"), response["peak_force_highest"])
+    at = int(forces.argmax())
+    return float(forces[at]), float(np.append(known["speed"], response["peak_speed"])[at])
+
+
+def in_words(response: xr.Dataset, static: float) -> str:
+    """Say how large the force of a tooth pair becomes over speed, and where flanks would part.
+
+    Parameters
+    ----------
+    response : xarray.Dataset
+        As :func:`largest_load`; it may have a response nowhere.
+    static : float
+        Whole force of a mesh at rest [N].
+
+    Returns
+    -------
+    str
+    """
+    known = response.dropna("speed", subset=["force_highest"])
+    count = known.sizes["speed"]
+    if not count:
+        return "In torsion it is unstable at all speeds looked at: there is no steady load of the teeth."
+    peaks, (largest, speed) = response.sizes["peak"], largest_load(response)
+    parted = int((known["force_lowest"].min("load") < 0.0).sum())
+    beyond = int((response["peak_force_lowest"] < 0.0).sum())
+    rises = count < response.sizes["speed"] or response.attrs["at_borders"]
+    between = (
+        f", and of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them at {beyond}"
+        if peaks
+        else ""
+    )
+    return (
+        f"In torsion, at {count} of {response.sizes['speed']} speeds where it is stable, and as long as flanks do not "
+        f"part, a tooth pair bears up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / static:.3g} times the "
+        f"whole static force of {static:.4g} N. At {parted} of these {count} speeds flanks would part{between}."
+        f"{AT_BORDERS if rises else ''}"
+    )
+
+
+def response_table(response: xr.Dataset, parameters: str) -> xr.Dataset:
+    """Put the forces of tooth pairs into arrays over speed.
+
+    Parameters
+    ----------
+    response : xarray.Dataset
+        As :func:`in_words`.
+    parameters : str
+        Of the drive, for provenance.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``speed`` [rad/s] and ``pair``: ``force_mean``, ``force_rms``, ``force_lowest``, ``force_highest`` [N], NaN
+        where it is unstable.
+    """
+    speed = response["speed"].values
+    return xr.Dataset(
+        {
+            f"force_{name}": _force(("speed", "pair"), response[f"force_{name}"].values, name)
+            for name in _STATISTICS
+        },
+        {
+            "speed": ("speed", speed, {"units": "rad/s", "long_name": "Speed of the face gear"}),
+            "pair": np.arange(response.sizes["load"]),
+        },
+        {"parameters": parameters},
+    )
+
+
+def peaks_table(response: xr.Dataset, parameters: str) -> xr.Dataset | None:
+    """Put the peaks of the response into arrays; None if there is none.
+
+    Parameters
+    ----------
+    response, parameters
+        As :func:`response_table`.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        Over ``peak``: ``peak_speed`` [rad/s], ``force_rms``, ``force_lowest``, ``force_highest`` [N], ``pair``,
+        numbered from 0; label as a coordinate.
+    """
+    count = response.sizes["peak"]
+    if not count:
+        return None
+    numbers = response["peak_load"].values.astype(float)
+    forces = {
+        f"force_{name}": _force("peak", response[f"peak_force_{name}"].values, name)
+        for name in _STATISTICS[1:]
+    }
+    return xr.Dataset(
+        {
+            "peak_speed": variable(
+                "peak", response["peak_speed"].values, "Speed of a peak", "rad/s", rtol=1e-4
+            ),
+            **forces,
+            "pair": variable("peak", numbers, "Number of the tooth pair, from 0", "1", atol=0.1),
+        },
+        {
+            "peak": np.arange(count),
+            "label": text("peak", response["peak_label"].values.tolist(), "Mode / harmonic of the mesh"),
+        },
+        {"parameters": parameters},
+    )
+
+
+def _force(dims: str | tuple[str, ...], values: Any, name: str) -> Any:
+    return variable(dims, values, f"Force of a tooth pair, {name}", "N", rtol=1e-6, atol=1e-6)

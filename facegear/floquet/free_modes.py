@@ -1,0 +1,207 @@
+"""Free motion of the constant part of a system: its modes, and springs for what hangs on nothing.
+
+The modes of M q̈ + C q̇ + K q = 0 carry the free motion from one instant to another exactly, as long as all of them
+oscillate. A system with rigid-body motions is held by springs, which its loads take back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.modes import NaturalMotions
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.support.types import ComplexArray, FloatArray
+
+# A mode that is slower than this part of the fastest is a rigid-body motion, whose frequency is known to the root of
+# rounding only; the modes of a system that is not held must not be taken for oscillations.
+_SLOWEST = 1e-5
+# Condition of the modes beyond which the square of it, in units of rounding, is more than panels may lose: as just
+# below critical damping.
+_MOST_DEPENDENT = 300.0
+# A spring that holds what hangs on nothing lets it oscillate at this part of the fastest frequency at least.
+_SOFTEST = 0.1
+
+
+class UnsuitableSystemError(ValueError):
+    """The free motion of a system is not a sum of oscillations, which contact-force collocation needs."""
+
+
+@dataclass(frozen=True, eq=False)
+class FreeModes:
+    """Modes of M q̈ + C q̇ + K q = 0: q = Re(displacement y), q̇ = Re(velocity y), y = coordinates (q, q̇).
+
+    Attributes
+    ----------
+    eigenvalues : array of complex, shape (..., n)
+        p with positive imaginary part [1/s].
+    displacement, velocity : array of complex, shape (..., n, n)
+        Columns of modes, scaled to unit kinetic energy.
+    coordinates : array of complex, shape (..., n, 2n)
+        y from the state.
+    input : array of complex, shape (..., n, n)
+        Modal acceleration by a force on the coordinates: coordinates' velocity half times M⁻¹.
+    """
+
+    eigenvalues: ComplexArray
+    displacement: ComplexArray
+    velocity: ComplexArray
+    coordinates: ComplexArray
+    input: ComplexArray
+
+    @classmethod
+    def of(cls, system: PeriodicSystem) -> FreeModes:
+        """Find the modes of the constant part of a system.
+
+        Raises
+        ------
+        UnsuitableSystemError
+            If a mode does not oscillate (rigid-body or overdamped) or the modes do not span the state space.
+        """
+        return cls.of_matrices(system.mass, system.damping, system.stiffness)
+
+    @classmethod
+    def of_all(cls, systems: Sequence[PeriodicSystem]) -> FreeModes:
+        """Find the modes of several systems of one size, with the systems along the first axis; as :meth:`of`."""
+        parts = [np.stack([getattr(x, name) for x in systems]) for name in ("mass", "damping", "stiffness")]
+        return _modes(parts[0].shape, *(part.tobytes() for part in parts))
+
+    @classmethod
+    def of_matrices(cls, mass: FloatArray, damping: FloatArray, stiffness: FloatArray) -> FreeModes:
+        """Find the modes from M, C and K, each (..., n, n); as :meth:`of`."""
+        n = mass.shape[-1]
+        if not stiffness.any(axis=(-1, -2)).all():
+            raise UnsuitableSystemError("stiffness is zero: every free motion is a rigid-body motion")
+        motions = NaturalMotions.of(mass, damping, stiffness)
+        values = motions.exponents
+        oscillating = values.imag > _SLOWEST * np.abs(values).max(axis=-1, keepdims=True)
+        counts = np.count_nonzero(oscillating, axis=-1)
+        if (counts != n).any():
+            raise UnsuitableSystemError(
+                f"the free motion has {counts[counts != n].flat[0]} oscillating modes, not {n}: "
+                "some are rigid-body or overdamped"
+            )
+        columns = motions.vectors.swapaxes(-1, -2)[oscillating].reshape(*mass.shape[:-2], n, 2 * n)
+        vectors = columns.swapaxes(-1, -2)
+        vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
+        basis = np.concatenate([vectors, vectors.conj()], axis=-1)
+        # x = Re(W y) with y twice the coefficients of the pairs W c + conj(W c).
+        rows = np.asarray(2.0 * _inverse(basis)[..., :n, :], dtype=complex)
+        half = replace(motions, exponents=values[oscillating].reshape(*mass.shape[:-2], n), vectors=vectors)
+        return cls(
+            eigenvalues=half.exponents,
+            displacement=half.displacements,
+            velocity=half.velocities,
+            coordinates=np.asarray(rows @ half.from_state, dtype=complex),
+            input=half.of_forces(rows),
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of modes n."""
+        return int(self.eigenvalues.shape[-1])
+
+    def state_from_real(self) -> FloatArray:
+        """Matrix from (Re y, Im y) to (q, q̇), shape (..., 2n, 2n)."""
+        both = np.concatenate([self.displacement, self.velocity], axis=-2)
+        return np.concatenate([both.real, -both.imag], axis=-1)
+
+    def real_from_state(self) -> FloatArray:
+        """Matrix from (q, q̇) to (Re y, Im y), shape (..., 2n, 2n)."""
+        return np.concatenate([self.coordinates.real, self.coordinates.imag], axis=-2)
+
+
+@lru_cache(maxsize=16)
+def _modes(shape: tuple[int, ...], mass: bytes, damping: bytes, stiffness: bytes) -> FreeModes:
+    """Modes of systems with these matrices, which rows of a map have in common where only loads differ."""
+    matrices = (np.frombuffer(part).reshape(shape) for part in (mass, damping, stiffness))
+    return FreeModes.of_matrices(*matrices)
+
+
+def _inverse(basis: ComplexArray) -> ComplexArray:
+    """Inverse of modes as columns, (..., 2n, 2n), refused where they are close to dependent."""
+    try:
+        inverse = np.asarray(np.linalg.inv(basis), dtype=complex)
+        bound = np.max(np.linalg.norm(basis, axis=(-2, -1)) * np.linalg.norm(inverse, axis=(-2, -1)))
+    except np.linalg.LinAlgError:
+        inverse, bound = basis, np.inf
+    # Frobenius norms bound the condition number; where they do not suffice, singular values tell.
+    if not bound < _MOST_DEPENDENT:
+        condition = np.max(np.linalg.cond(basis))
+        if not condition < _MOST_DEPENDENT:
+            raise UnsuitableSystemError(
+                f"the free modes are close to dependent (condition number {condition:.2g})"
+            )
+    return inverse
+
+
+@dataclass(frozen=True, eq=False)
+class HeldSystems:
+    """Systems with a spring for each motion that hangs on nothing, and what it takes to undo that.
+
+    A spring ω² M r rᵀM lets the undamped motion r of unit mass oscillate and leaves all others alone. Taken back as
+    one more load, of shape M r and stiffness −ω², it changes nothing in the motion of the whole.
+
+    Attributes
+    ----------
+    systems : sequence of PeriodicSystem
+    modes : FreeModes
+    springs : array, shape (S, extra loads)
+        ω² [1/s²], to be taken off again.
+    """
+
+    systems: Sequence[PeriodicSystem]
+    modes: FreeModes
+    springs: FloatArray
+
+    @classmethod
+    def of(cls, systems: Sequence[PeriodicSystem], stiffest: float, fewest: int) -> HeldSystems:
+        """Hold what needs it, by springs as strong as the loads, whose sum over their mobilities is `stiffest` [1/s²].
+
+        Systems of fewer than `fewest` coordinates are not held.
+
+        Raises
+        ------
+        UnsuitableSystemError
+            If springs are not all that is missing.
+        """
+        none = np.zeros((len(systems), 0))
+        try:
+            return cls(systems, FreeModes.of_all(systems), none)
+        except UnsuitableSystemError:
+            if systems[0].size < fewest:
+                raise
+            # One direction serves all: that of a system with as many such motions as any.
+            count, first = 0, systems[0]
+            for system in systems:
+                slow = int(np.count_nonzero(_undamped(system)[0] <= _SLOWEST**2))
+                count, first = (slow, system) if slow > count else (count, first)
+            if count == 0:
+                raise
+        _, size, turned = _undamped(first)
+        strength = float(np.clip(stiffest, _SOFTEST**2 * size, size)) if size > 0.0 else stiffest
+        if strength == 0.0:
+            strength = 1.0 / max(system.period for system in systems) ** 2
+        # M r = L times a unit vector, M = L Lᵀ.
+        columns = np.linalg.cholesky(first.mass) @ turned[:, :count]
+        extra = tuple(ContactLoad(PiecewiseChebyshev.constant(column)) for column in columns.T)
+        spring = strength * columns @ columns.T
+        held = [
+            replace(system, stiffness=system.stiffness + spring, loads=system.loads + extra)
+            for system in systems
+        ]
+        return cls(held, FreeModes.of_all(held), np.full((len(systems), count), strength))
+
+
+def _undamped(system: PeriodicSystem) -> tuple[FloatArray, float, FloatArray]:
+    """Squares of undamped frequencies over the largest, ascending (n,), that [1/s²], and modes times Lᵀ, M = L Lᵀ."""
+    inverse = np.linalg.inv(np.linalg.cholesky(system.mass))
+    reduced = inverse @ system.stiffness @ inverse.T
+    squares, turned = np.linalg.eigh((reduced + reduced.T) / 2.0)
+    largest = float(np.abs(squares).max())
+    return squares / (largest if largest > 0.0 else 1.0), largest, turned
