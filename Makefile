@@ -39,7 +39,7 @@ test: environment ## run the tests (some minutes)
 
 # One more than there are processors: these wait for kernels, signals and the browser now and then.
 test-slow: environment ## run the tests that take a minute each
-	@$(PYTEST) -n 3 --dist loadscope -m 'slow and not book'
+	@$(PYTEST) -n 3 --dist loadscope -m 'slow and not book' $$(grep -rl --include='*.py' 'mark[.]slow' tests)
 
 test-kernel: environment ## run the tests as on another processor
 	@$(PYTHON) tools/test_kernel.py -n 2 --dist loadfile -m 'not slow and not book'

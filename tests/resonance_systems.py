@@ -1,5 +1,7 @@
 """Small systems with known parametric resonances."""
 
+import functools
+
 import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
@@ -11,6 +13,7 @@ from tests.independent.monodromy import TURN
 CHECK = settings(deadline=None, derandomize=True, max_examples=25)
 
 
+@functools.cache
 def wave(function):
     return PiecewiseChebyshev.fit(lambda x, piece: function(TURN * x), [0.0])
 

@@ -14,7 +14,7 @@ import xarray as xr
 from IPython.display import Markdown
 from myst_nb import glue
 
-from compendium import checks, printed
+from compendium import checks, ledger_tables, printed
 
 
 class ChapterError(Exception):
@@ -132,7 +132,7 @@ class Chapter:
         }
         for what, count in counts.items():
             glue(f"{self.name}_{what}", count, display=False)
-        return Markdown(printed.as_markdown(rows))  # type: ignore[no-untyped-call]
+        return Markdown(ledger_tables.as_markdown(rows))  # type: ignore[no-untyped-call]
 
     def finish(self) -> Markdown:
         """Write and check the arrays of all figures, and return the deviations as a table.

@@ -39,7 +39,7 @@ from facegear.maps.crew import Crew
 from facegear.maps.response_map import frequency_response
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.contact import Contact
-from facegear.mechanics.transverse import FaceGears
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.parameters import number_of_workers
 from facegear.support.types import FloatArray
 

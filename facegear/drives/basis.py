@@ -16,9 +16,9 @@ import numpy as np
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.edge_stiffness import complete_harmonics
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.mechanics.plate import Body
 from facegear.mechanics.radial_modes import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS
-from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import integer_at_least, within
 from facegear.support.types import FloatArray
 

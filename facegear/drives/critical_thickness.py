@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from facegear.maps.lobes import CriticalThickness, StableRangeError, UnstableTopError, highest_lobes
 from facegear.maps.parallel import in_processes
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.mechanics.plate import THICKNESS_RATIO_RANGE
-from facegear.mechanics.transverse import FaceGears
 from facegear.support.parameters import rpm
 
 

@@ -15,8 +15,9 @@ from numpy.typing import ArrayLike
 from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.response import steady_response
 from facegear.mechanics.tooth_damage import DamagedTooth
+from facegear.support.kinds import require_kind
 from facegear.support.labelled import variable
-from facegear.support.parameters import finite_array, named, rad_per_s
+from facegear.support.parameters import finite_array, rad_per_s
 from facegear.support.types import FloatArray
 
 # Number of the face gear among the coordinates.
@@ -49,8 +50,7 @@ def signs_of_damage(cracked: DamagedTooth, speeds_rpm: ArrayLike, parameters: st
     TypeError, ValueError
         If an argument is of the wrong kind, or there is no torque.
     """
-    if not isinstance(cracked, DamagedTooth):
-        raise TypeError(f"cracked must be a DamagedTooth, got {named(cracked)}")
+    require_kind("cracked", cracked, DamagedTooth)
     shown = finite_array("speeds_rpm", speeds_rpm)
     if shown.ndim != 1 or (shown <= 0.0).any():
         raise ValueError(f"speeds_rpm must be a list of speeds greater than 0 rpm, got {speeds_rpm!r}")

@@ -23,7 +23,7 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
 from facegear.maps.response_map import frequency_response
 from facegear.mechanics.disk import modal_mass
-from facegear.mechanics.transverse import FaceGears
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.types import FloatArray
 
 RIGID = "rigid teeth do not give way, and conjugate flanks without errors turn the gear evenly"

@@ -33,12 +33,13 @@ from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.inplane import FASTEST_SPIN, fastest_speed
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.mechanics.plate import Body
 from facegear.mechanics.properties import Material, MeshLoad
 from facegear.mechanics.radial_modes import BORE_RATIO_RANGE
 from facegear.mechanics.tooth_damage import DamagedTooth
 from facegear.mechanics.torsional import Torsional
-from facegear.mechanics.transverse import FaceGears, Transverse
+from facegear.mechanics.transverse import Transverse
 from facegear.mechanics.two_gears import Role, TwoGears
 from facegear.support.parameters import rpm
 from facegear.support.plain_yaml import read_plain_yaml

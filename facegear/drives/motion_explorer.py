@@ -17,7 +17,8 @@ from facegear.mechanics.gearboxes import ProportionalGearbox
 from facegear.plotting.interactive import image
 from facegear.plotting.motions import motions
 from facegear.plotting.style import FAINT, INK, VERMILION, panels, styled
-from facegear.support.parameters import finite, named, rad_per_s
+from facegear.support.kinds import named
+from facegear.support.parameters import finite, rad_per_s
 
 _POINTS = 401
 _REFUSALS = (TypeError, ValueError, ArithmeticError)

@@ -19,8 +19,9 @@ from facegear.floquet.orbits import Orbit, periodic_orbit
 from facegear.floquet.transients import settled
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.backlash import Backlash
+from facegear.support.kinds import named
 from facegear.support.labelled import text, variable
-from facegear.support.parameters import integer_at_least, named, rpm
+from facegear.support.parameters import integer_at_least, rpm
 from facegear.support.types import FloatArray
 
 # Mesh periods that a motion is followed, at least and at most; growth by this power of e takes it far from rest.

@@ -12,8 +12,8 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.verdict import powered
 from facegear.mechanics.disk import reference_stiffness
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
+from facegear.mechanics.pinions_on_disk import FaceGears, nominal_pinion_mass
 from facegear.mechanics.spreads import RIM_POINT, pitch_ratio
-from facegear.mechanics.transverse import FaceGears, nominal_pinion_mass
 
 
 class Row(NamedTuple):

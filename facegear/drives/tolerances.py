@@ -21,7 +21,7 @@ from facegear.floquet.models import (
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import reference_stiffness
-from facegear.mechanics.transverse import FaceGears
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.parameters import keep, positive, within
 
 # Powers of the factors of stiffness and of damping by which parameters besides the bearing's change. Damping of teeth

@@ -12,9 +12,10 @@ from facegear.drives.contacts import NAMES, USUAL_CORRECTION, transverse_contact
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID, COMPLIANCE, FlexibleTeeth
 from facegear.mechanics.contact import Contact
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.mechanics.sharing import RULES
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
-from facegear.mechanics.transverse import FaceGears, Transverse
+from facegear.mechanics.transverse import Transverse
 
 RIGID, RIGID_TOTAL = "rigid teeth, frozen rate", "rigid teeth, total rate"
 """Teeth as in chapters 4 to 6, and the same with bearings that follow the moving contact."""

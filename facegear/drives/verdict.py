@@ -24,7 +24,7 @@ from facegear.maps.parallel import each_in_processes
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following, complete_harmonics
-from facegear.mechanics.transverse import FaceGears
+from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.parameters import rpm
 
 FORCES: dict[Following, str] = {"follower": "force follows the rim", "dead": "force keeps its direction"}

@@ -18,7 +18,7 @@ from facegear.drives.intervals import united
 from facegear.drives.tolerances import Toleranced, TolerancedGearbox, Tolerances
 from facegear.maps.closing import ClosingValue, growth_peaks
 from facegear.maps.tracing import Tongue, tongues
-from facegear.mechanics.transverse import FaceGears
+from facegear.mechanics.pinions_on_disk import FaceGears
 
 # Values along a way at which the largest growth is looked at before its zeros are found.
 _ALONG = 5

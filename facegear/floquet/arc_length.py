@@ -17,7 +17,8 @@ from facegear.floquet.branches import Kind
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.contact_panels import Motion, Panels, linearised
 from facegear.floquet.orbits import Orbit, Step, require_clearances
-from facegear.support.parameters import finite, integer_at_least, keep, named, positive, within
+from facegear.support.kinds import named, require_kind
+from facegear.support.parameters import finite, integer_at_least, keep, positive, within
 from facegear.support.types import FloatArray
 
 Systems = Callable[[float], ClearanceSystem]
@@ -63,8 +64,7 @@ class Following:
     def __post_init__(self) -> None:
         keep(self, longest_arc=within("longest_arc", self.longest_arc, 1e-6, 1.0))
         keep(self, most=integer_at_least("most", self.most, 2), largest=positive("largest", self.largest))
-        if not isinstance(self.panels, Panels):
-            raise TypeError(f"panels must be a Panels, got {named(self.panels)}")
+        require_kind("panels", self.panels, Panels)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,8 +100,7 @@ class Setting:
         """
         if not callable(systems):
             raise TypeError(f"systems must be a function of the parameter, got {named(systems)}")
-        if not isinstance(orbit, Orbit):
-            raise TypeError(f"orbit must be an Orbit, got {named(orbit)}")
+        require_kind("orbit", orbit, Orbit)
         low, high = finite("low", low), finite("high", high)
         if low >= high:
             raise ValueError(f"low must be less than high = {high!r}, got {low!r}")

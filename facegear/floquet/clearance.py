@@ -23,7 +23,8 @@ from numpy.typing import NDArray
 from facegear.floquet.loads import ContactLoad
 from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
-from facegear.support.parameters import integer_at_least, integer_within, keep, named, nonnegative
+from facegear.support.kinds import named
+from facegear.support.parameters import integer_at_least, integer_within, keep, nonnegative
 from facegear.support.types import FloatArray
 
 

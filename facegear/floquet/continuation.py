@@ -29,7 +29,8 @@ from facegear.floquet.arc_length import (
 )
 from facegear.floquet.branches import Branch, Kind, Special
 from facegear.floquet.orbits import Orbit, Step, periodic_orbit
-from facegear.support.parameters import finite, named, within
+from facegear.support.kinds import named, require_kind
+from facegear.support.parameters import finite, within
 from facegear.support.types import FloatArray
 
 # Arc to which a special point is found; arcs below which a family is stuck.
@@ -183,8 +184,7 @@ def orbits_at(systems: Systems, branch: Branch, parameter: float) -> tuple[Orbit
     TypeError, ValueError
         Naming the argument.
     """
-    if not isinstance(branch, Branch):
-        raise TypeError(f"branch must be a Branch, got {named(branch)}")
+    require_kind("branch", branch, Branch)
     value = finite("parameter", parameter)
     return tuple(_orbit_at(systems, sheet, value) for sheet in branch.sheets)
 

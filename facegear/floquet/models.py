@@ -18,7 +18,7 @@ from typing import Any, Protocol, TypeVar, get_args, get_type_hints
 from numpy.typing import ArrayLike
 
 from facegear.floquet.periodic import PeriodicSystem, require_system
-from facegear.support.parameters import named
+from facegear.support.kinds import named
 from facegear.support.types import FloatArray
 
 

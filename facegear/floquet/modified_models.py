@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from facegear.floquet.models import Coordinate, Model, require_model, system_at
 from facegear.floquet.periodic import PeriodicSystem, without_rigid_motion
 from facegear.floquet.piecewise import PiecewiseChebyshev
-from facegear.support.parameters import named
+from facegear.support.kinds import named
 
 
 @dataclass(frozen=True)

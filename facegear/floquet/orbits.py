@@ -30,7 +30,8 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, Side
 from facegear.floquet.response import SteadyResponse
 from facegear.floquet.transients import contacts_along
-from facegear.support.parameters import finite_array, integer_at_least, named
+from facegear.support.kinds import named, require_kind
+from facegear.support.parameters import finite_array, integer_at_least
 from facegear.support.types import ComplexArray, FloatArray
 
 # Change of a motion, over its size, at which it has settled; the next step would change its square.
@@ -248,8 +249,7 @@ def periodic_orbit(
 
 def require_clearances(system: object) -> None:
     """Refuse what is no system with clearances."""
-    if not isinstance(system, ClearanceSystem):
-        raise TypeError(f"system must be a ClearanceSystem, got {named(system)}")
+    require_kind("system", system, ClearanceSystem)
 
 
 def _first_pattern(whole: ClearanceSystem, count: int, guess: Any, panels: Panels) -> Pattern:

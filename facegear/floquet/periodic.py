@@ -30,7 +30,8 @@ from facegear.floquet.piecewise import (
     real_array,
     wrap,
 )
-from facegear.support.parameters import finite_array, integer_at_least, keep, named, positive
+from facegear.support.kinds import named
+from facegear.support.parameters import finite_array, integer_at_least, keep, positive
 from facegear.support.types import FloatArray
 
 # Stiffness, damping and loads along a rigid-body motion, over their largest.

@@ -18,6 +18,7 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.hertz import Ellipse, contact_ellipse
 from facegear.geometry.misalignment import LONGEST, WIDEST, Misalignment
 from facegear.geometry.proportions import involute
+from facegear.support.kinds import require_kinds
 from facegear.support.parameters import finite_array, nonnegative, one_of, within
 from facegear.support.types import FloatArray
 
@@ -53,9 +54,7 @@ class UnloadedContact(ActionPath):
     """
 
     def __post_init__(self) -> None:
-        for name, kind in (("drive", Drive), ("misalignment", Misalignment)):
-            if not isinstance(getattr(self, name), kind):
-                raise TypeError(f"{name} must be a {kind.__name__}, got {getattr(self, name)!r}")
+        require_kinds(self, drive=Drive, misalignment=Misalignment)
         if self.drive.has_line_contact:
             raise ValueError(
                 f"drive.shaper_teeth must exceed pinion_teeth={self.drive.pinion_teeth} for contact at a point; with "

@@ -25,7 +25,8 @@ from facegear.floquet.orbits import Orbit
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics.torsional import Torsional
-from facegear.support.parameters import designed, finite, keep, named, one_of, within
+from facegear.support.kinds import named, require_kind
+from facegear.support.parameters import designed, finite, keep, one_of, within
 from facegear.support.types import FloatArray
 
 BackFlank = Literal["reversed", "printed"]
@@ -92,8 +93,7 @@ class Backlash:
     back_flank: BackFlank = "reversed"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.torsional, Torsional):
-            raise TypeError(f"torsional must be a Torsional, got {named(self.torsional)}")
+        require_kind("torsional", self.torsional, Torsional)
         torque = finite("torque", self.torque, "N m")
         if torque <= 0.0:
             raise ValueError(

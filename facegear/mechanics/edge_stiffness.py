@@ -23,6 +23,7 @@ from facegear.mechanics.pressed_points import Spread, points_on, require_spread
 from facegear.mechanics.pressed_stiffness import pressed_stiffness
 from facegear.mechanics.radial_modes import plate_quadrature
 from facegear.mechanics.spreads import RIM_POINT
+from facegear.support.kinds import require_kind
 from facegear.support.parameters import (
     designed,
     integer_at_least,
@@ -114,8 +115,7 @@ def edge_load_stiffness(stress: EdgeLoadStress, following: Following = "follower
     The weak form of the operator (6-23) is the work of the stresses on the slopes, symmetric, and the transverse part
     of the rim load times the deflection at the rim, which is what a follower force adds.
     """
-    if not isinstance(stress, EdgeLoadStress):
-        raise TypeError(f"stress must be an EdgeLoadStress, got {stress!r}")
+    require_kind("stress", stress, EdgeLoadStress)
     one_of("following", following, ("follower", "dead"))
     body = stress.body
     harmonics = min(stress.harmonics, complete_harmonics(body))

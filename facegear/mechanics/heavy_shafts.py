@@ -23,7 +23,8 @@ from facegear.mechanics.rods import (
     with_mass,
 )
 from facegear.mechanics.torsional import InSi, Torsional, natural_speed
-from facegear.support.parameters import designed, integer_within, keep, named, within
+from facegear.support.kinds import require_kinds
+from facegear.support.parameters import designed, integer_within, keep, within
 from facegear.support.types import FloatArray
 
 # Lengths of shafts with mass [m]: thin disks, and as long as an airframe.
@@ -69,10 +70,7 @@ class HeavyShafts:
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        if not isinstance(self.torsional, Torsional):
-            raise TypeError(f"torsional must be a Torsional, got {named(self.torsional)}")
-        if not isinstance(self.material, Material):
-            raise TypeError(f"material must be a Material, got {named(self.material)}")
+        require_kinds(self, torsional=Torsional, material=Material)
         for name in ("input_length", "output_length"):
             keep(self, **{name: _checked_length(name, getattr(self, name))})
         keep(self, modes=integer_within("modes", self.modes, 0, MOST_MODES))

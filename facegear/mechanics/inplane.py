@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike
 
 from facegear.floquet.series import ChebyshevSeries
 from facegear.mechanics.plate import Body
+from facegear.support.kinds import require_kind
 from facegear.support.parameters import finite_array, integer_within, keep, one_of, within
 from facegear.support.types import FloatArray
 
@@ -227,8 +228,7 @@ class EdgeLoadStress:
     angle: float = 0.0
 
     def __post_init__(self) -> None:
-        if not isinstance(self.body, Body):
-            raise TypeError(f"body must be a Body, got {self.body!r}")
+        require_kind("body", self.body, Body)
         one_of("direction", self.direction, ("tangential", "radial"))
         keep(
             self,

@@ -31,6 +31,7 @@ from facegear.mechanics.plate_compliance import PlateCompliance
 from facegear.mechanics.properties import STEEL, Material
 from facegear.mechanics.slices import Slices
 from facegear.mechanics.tooth_stiffness import checked_factor, mesh_stiffness
+from facegear.support.kinds import require_kinds
 from facegear.support.parameters import finite, finite_array, keep, one_of
 from facegear.support.types import FloatArray
 
@@ -83,14 +84,6 @@ def checked_torque(torque: float) -> float:
             "a torque the other way presses the other flank, for which an offset counts with the opposite sign"
         )
     return number
-
-
-def require_kinds(instance: object, **kinds: type) -> None:
-    """Refuse fields of a dataclass that are not of their kinds, naming the first."""
-    for name, kind in kinds.items():
-        value = getattr(instance, name)
-        if not isinstance(value, kind):
-            raise TypeError(f"{name} must be a {kind.__name__}, got {value!r}")
 
 
 @lru_cache(maxsize=64)

@@ -39,9 +39,10 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, modal_mass, unit_shape
+from facegear.mechanics.pinions_on_disk import MOST_PERIODS, PinionsOnDisk
 from facegear.mechanics.radial_modes import RadialModes
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
-from facegear.mechanics.transverse import MOST_PERIODS, PinionsOnDisk, Transverse
+from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import designed, finite_array, keep, nonnegative, positive, within
 from facegear.support.types import FloatArray
 

@@ -20,10 +20,11 @@ from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.misalignment import ALIGNED, Misalignment
 from facegear.geometry.point_path import PointPath, aligned_contact
 from facegear.geometry.timed_pairs import PairStates, TimedPairs
-from facegear.mechanics.loaded_contact import COMPLIANCES, LoadedContact, checked_torque, require_kinds
+from facegear.mechanics.loaded_contact import COMPLIANCES, LoadedContact, checked_torque
 from facegear.mechanics.mesh_cycle import fit_tolerances
 from facegear.mechanics.properties import STEEL, Material
 from facegear.mechanics.tooth_stiffness import checked_factor
+from facegear.support.kinds import require_kinds
 from facegear.support.parameters import keep, one_of
 from facegear.support.types import FloatArray
 

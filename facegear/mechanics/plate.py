@@ -17,6 +17,7 @@ from facegear.mechanics.radial_modes import (
     RadialModes,
     radial_modes,
 )
+from facegear.support.kinds import require_kinds
 from facegear.support.parameters import designed, integer_within, keep, within
 from facegear.support.types import FloatArray
 
@@ -64,10 +65,7 @@ class Body:
     nodal_diameters: int = 3
 
     def __post_init__(self) -> None:
-        if not isinstance(self.drive, Drive):
-            raise TypeError(f"drive must be a Drive, got {self.drive!r}")
-        if not isinstance(self.material, Material):
-            raise TypeError(f"material must be a Material, got {self.material!r}")
+        require_kinds(self, drive=Drive, material=Material)
         keep(self, thickness_ratio=within("thickness_ratio", self.thickness_ratio, *THICKNESS_RATIO_RANGE))
         lowest, highest = (ratio * self.outer_radius for ratio in BORE_RATIO_RANGE)
         keep(self, bore_radius=within("bore_radius", self.bore_radius, lowest, highest, "m"))

@@ -27,7 +27,8 @@ import numpy as np
 
 from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.mechanics.properties import STEEL, Material
-from facegear.support.parameters import integer_at_least, integer_within, keep, named, nonnegative, positive
+from facegear.support.kinds import named, require_kind
+from facegear.support.parameters import integer_at_least, integer_within, keep, nonnegative, positive
 from facegear.support.types import FloatArray
 
 MOST_MODES = 40
@@ -69,8 +70,7 @@ class Rod:
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        if not isinstance(self.material, Material):
-            raise TypeError(f"material must be a Material, got {named(self.material)}")
+        require_kind("material", self.material, Material)
         keep(
             self,
             stiffness=positive("stiffness", self.stiffness, "N m/rad"),
@@ -169,8 +169,7 @@ class Shaft:
     start: int | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.rod, Rod):
-            raise TypeError(f"rod must be a Rod, got {named(self.rod)}")
+        require_kind("rod", self.rod, Rod)
         keep(self, end=integer_at_least("end", self.end, 0))
         if self.start is not None:
             keep(self, start=integer_at_least("start", self.start, 0))
@@ -250,8 +249,7 @@ def checked_shafts(shafts: Iterable[Shaft], size: int) -> tuple[Shaft, ...]:
         raise TypeError(f"shafts must be a list of Shaft, got {named(shafts)}")
     shafts = tuple(shafts)
     for number, shaft in enumerate(shafts):
-        if not isinstance(shaft, Shaft):
-            raise TypeError(f"shafts[{number}] must be a Shaft, got {named(shaft)}")
+        require_kind(f"shafts[{number}]", shaft, Shaft)
         for name, place in (("start", shaft.start), ("end", shaft.end)):
             if place is not None and place >= size:
                 raise ValueError(

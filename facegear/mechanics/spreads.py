@@ -16,6 +16,7 @@ from facegear.geometry.drive import Drive
 from facegear.geometry.proportions import DEDENDUM
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pressed_points import PressedPoints, Spread, require_spread
+from facegear.support.kinds import require_kind
 from facegear.support.parameters import keep, nonnegative, within
 from facegear.support.quadrature import gauss_legendre
 from facegear.support.types import FloatArray
@@ -147,7 +148,7 @@ class ContactPointsAt(Spread):
     fraction: float
 
     def __post_init__(self) -> None:
-        _require_contact(self.contact)
+        require_kind("contact", self.contact, Contact)
         keep(self, fraction=within("fraction", self.fraction, 0.0, 1.0))
 
     def points(self, drive: Drive) -> PressedPoints:
@@ -187,7 +188,7 @@ class ContactPoints(Spread):
     contact: Contact
 
     def __post_init__(self) -> None:
-        _require_contact(self.contact)
+        require_kind("contact", self.contact, Contact)
 
     def points(self, drive: Drive) -> PressedPoints:
         """Contact points at Gauss nodes in each smooth piece of the mesh period."""
@@ -238,11 +239,6 @@ class ToothPatches(Spread):
             np.add.outer(teeth.angle, tooth.angle).ravel(),
             np.outer(teeth.share, tooth.share).ravel(),
         )
-
-
-def _require_contact(value: object) -> None:
-    if not isinstance(value, Contact):
-        raise TypeError(f"contact must be a Contact, got {value!r}")
 
 
 def _touching(

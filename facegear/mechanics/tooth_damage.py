@@ -22,7 +22,8 @@ from facegear.floquet.multipliers import Method, transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 from facegear.mechanics.torsional import Torsional
-from facegear.support.parameters import finite, integer_within, keep, named, nonnegative, one_of
+from facegear.support.kinds import require_kind
+from facegear.support.parameters import finite, integer_within, keep, nonnegative, one_of
 from facegear.support.types import FloatArray
 
 Wheel = Literal["face gear", "pinion"]
@@ -71,8 +72,7 @@ class DamagedTooth:
     torque: float = 0.0
 
     def __post_init__(self) -> None:
-        if not isinstance(self.torsional, Torsional):
-            raise TypeError(f"torsional must be a Torsional, got {named(self.torsional)}")
+        require_kind("torsional", self.torsional, Torsional)
         one_of("wheel", self.wheel, ("face gear", "pinion"))
         keep(
             self,

@@ -31,6 +31,7 @@ from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import SKEW_LINE, Contact
 from facegear.mechanics.properties import STEEL
 from facegear.mechanics.tooth_stiffness import tooth_stiffness
+from facegear.support.kinds import require_kind
 from facegear.support.parameters import designed, finite_array, keep, nonnegative, one_of, positive, within
 from facegear.support.types import FloatArray
 
@@ -118,8 +119,7 @@ class Gearbox:
     output_damping: float = field(metadata=designed("output shaft damping"))
 
     def __post_init__(self) -> None:
-        if not isinstance(self.drive, Drive):
-            raise TypeError(f"drive must be a Drive, got {self.drive!r}")
+        require_kind("drive", self.drive, Drive)
         inertia, stiffness = _steel_scales(self.drive)
         mesh = within("mesh_stiffness", self.mesh_stiffness, stiffness / 500.0, stiffness * 20.0, "N/m")
         keep(
@@ -248,8 +248,7 @@ class Torsional:
     def __post_init__(self) -> None:
         if not isinstance(getattr(self.gearbox, "in_si", None), Gearbox):
             raise TypeError(f"gearbox must be a Gearbox, got {self.gearbox!r}")
-        if not isinstance(self.contact, Contact):
-            raise TypeError(f"contact must be a Contact, got {self.contact!r}")
+        require_kind("contact", self.contact, Contact)
         one_of("arm", self.arm, ("printed", "conjugate"))
         self.contact.require(self.drive)
 

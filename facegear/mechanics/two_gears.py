@@ -32,8 +32,9 @@ from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.disk import disk_coordinates, disk_matrices, mirror_signs, modal_mass, unit_shape
 from facegear.mechanics.mesh_oscillator import MeshOscillator
+from facegear.mechanics.pinions_on_disk import Driving, PinionsOnDisk
 from facegear.mechanics.radial_modes import RadialModes
-from facegear.mechanics.transverse import Driving, PinionsOnDisk
+from facegear.support.kinds import require_kind
 from facegear.support.parameters import keep, one_of, positive
 from facegear.support.types import FloatArray
 
@@ -103,8 +104,7 @@ class TwoGears:
     roles: Sequence[Role] | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.gear, MeshOscillator):
-            raise TypeError(f"gear must be a MeshOscillator, got {self.gear!r}")
+        require_kind("gear", self.gear, MeshOscillator)
         for name in ("sides", "phases"):
             if (value := getattr(self.gear, name)) is not None:
                 raise ValueError(f"gear.{name} must be None between two gears, got {value!r}")

@@ -28,11 +28,6 @@ def _shown(value: Any, unit: str) -> str:
     return f"{_plain(value)!r} {unit}".rstrip()
 
 
-def named(value: object) -> str:
-    """Say what a value is, for a message: "a Body", or "the class Body"."""
-    return f"the class {value.__name__}" if isinstance(value, type) else f"a {type(value).__name__}"
-
-
 # A time span of NumPy passes for an integer (it is registered as one), a boolean of Python is one.
 _NO_NUMBERS = (bool, np.bool_, np.timedelta64)
 

@@ -1,5 +1,6 @@
 """The printed book: `make pdf`, then `make test-book`."""
 
+import io
 import re
 import shutil
 import unicodedata
@@ -11,7 +12,7 @@ import pytest
 import yaml
 from playwright.sync_api import Browser, Page, Playwright
 from pypdf import PdfReader
-from pypdf.generic import ArrayObject, Destination
+from pypdf.generic import ArrayObject, ContentStream, Destination
 
 from tools.print_book import FLAGS, lay_out
 
@@ -19,6 +20,8 @@ pytestmark = [pytest.mark.book, pytest.mark.takes(20)]
 
 ROOT = Path(__file__).resolve().parents[2]
 PDF = ROOT / "build" / "facegear.pdf"
+# Operators that draw a path, as Chromium writes them: one a row, after their numbers.
+LINES = re.compile(rb"^[-+.\d ]+ (?:m|l|c|v|y|re)\n", re.MULTILINE)
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +32,7 @@ def reader() -> PdfReader:
 
 @pytest.fixture(scope="module")
 def extracted(reader: PdfReader) -> tuple[list[str], str]:
-    """Return the text of each page, which takes a while to find between the lines of figures, and what is no code."""
+    """Return the text of each page, and what is no code. Lines of figures, most of a page, are not even taken apart."""
     prose: list[str] = []
 
     def note(
@@ -38,7 +41,14 @@ def extracted(reader: PdfReader) -> tuple[list[str], str]:
         if "Mono" not in (font or {}).get("/BaseFont", ""):
             prose.append(part)
 
-    return [page.extract_text(visitor_text=note) for page in reader.pages], " ".join(prose)
+    parse = ContentStream._parse_content_stream
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            ContentStream,
+            "_parse_content_stream",
+            lambda content, stream: parse(content, io.BytesIO(LINES.sub(b"", stream.read()))),
+        )
+        return [page.extract_text(visitor_text=note) for page in reader.pages], " ".join(prose)
 
 
 @pytest.fixture(scope="module")

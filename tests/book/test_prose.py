@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from compendium.datasets.transverse import unstable_share
+from compendium.datasets.map_readings import unstable_share
 from facegear.support.labelled import load
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from compendium import printed
+from compendium import ledger_tables, printed
 from facegear.design.changes import effects_of_changes
 from facegear.drives import report_arrays
 from facegear.drives.assessment import Assessment
@@ -150,7 +150,7 @@ def test_points_of_a_tooth_are_read_by_pandas(tmp_path):
 def test_the_ledger_is_read_by_pandas(tmp_path):
     entry = printed.PrintedValue(**ENTRY)
     rows = printed.ledger((entry,), {entry.id: 231.94})
-    frame = pd.read_csv(printed.save_csv({3: rows}, tmp_path / "ledger.csv"), dtype={"printed": str})
+    frame = pd.read_csv(ledger_tables.save_csv({3: rows}, tmp_path / "ledger.csv"), dtype={"printed": str})
     assert frame["printed"].tolist() == [entry.printed]
     assert frame["computed"].tolist() == [231.94]
     assert frame["unit"].tolist() == [entry.unit]

@@ -10,7 +10,8 @@ import pytest
 from compendium.datasets import accuracy as accuracy_arrays
 from compendium.datasets import meshing as meshing_arrays
 from compendium.datasets import stability as stability_arrays
-from compendium.plotting import meshing, schematics, stability
+from compendium.datasets import tooth_limits as limit_arrays
+from compendium.plotting import meshing, schematics, stability, tooth_limits
 from facegear import Drive
 from facegear.floquet import multipliers as floquet
 from facegear.geometry import solids
@@ -21,7 +22,7 @@ from tests.figures import texts
 
 DRIVE = Drive(26, 130, 3.175e-3)
 TOOTH = meshing_arrays.tooth_and_contact_lines(DRIVE, lines=5, points=9)
-RATIOS = meshing_arrays.contact_ratios(DRIVE, (25, 26, 27))
+RATIOS = limit_arrays.contact_ratios(DRIVE, (25, 26, 27))
 LENGTH = meshing_arrays.mesh_length(DRIVE, 1.5, samples=21)
 
 
@@ -50,21 +51,21 @@ LENGTH = meshing_arrays.mesh_length(DRIVE, 1.5, samples=21)
             "contact centroid",
         ),
         (lambda: meshing.skew_lines(meshing_arrays.skew_lines(DRIVE, 1.5, samples=21)), "skew line, pair 3"),
-        (lambda: meshing.contact_ratio_after_tregold(RATIOS, marked=(26,)), "1.5532"),
-        (lambda: meshing.contact_ratios_compared(RATIOS, LENGTH, LENGTH), "true contact lines"),
+        (lambda: tooth_limits.contact_ratio_after_tregold(RATIOS, marked=(26,)), "1.5532"),
+        (lambda: tooth_limits.contact_ratios_compared(RATIOS, LENGTH, LENGTH), "true contact lines"),
         (
-            lambda: meshing.undercut_condition(
-                meshing_arrays.undercut_condition(DRIVE, np.linspace(-0.5, 0.5, 9))
+            lambda: tooth_limits.undercut_condition(
+                limit_arrays.undercut_condition(DRIVE, np.linspace(-0.5, 0.5, 9))
             ),
             "physical",
         ),
         (
-            lambda: meshing.limits_against_shaft_angle(
-                meshing_arrays.limits_against_shaft_angle(DRIVE, (80.0, 90.0))
+            lambda: tooth_limits.limits_against_shaft_angle(
+                limit_arrays.limits_against_shaft_angle(DRIVE, (80.0, 90.0))
             ),
             "Tregold",
         ),
-        (lambda: meshing.top_land(meshing_arrays.top_land(DRIVE, samples=21)), "$R_2$ = 231.939 mm"),
+        (lambda: tooth_limits.top_land(limit_arrays.top_land(DRIVE, samples=21)), "$R_2$ = 231.939 mm"),
         (
             lambda: schematics.shaper_profile(
                 DRIVE, solids.pinion_outline(DRIVE), DRIVE.pinion_flank(2, 9).points[0, :, :2], step=5

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from compendium import printed
+from compendium import ledger_tables, printed
 
 ENTRY = {
     "id": "case_1_outer_radius",
@@ -149,15 +149,17 @@ def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
     ]
     values = {ENTRY["id"]: 231.93881, "b": 283.04, "c": True, "d": None}
     rows = printed.ledger(printed.load_printed(write(tmp_path, *entries)), values)
-    table = printed.as_markdown(rows).splitlines()
+    table = ledger_tables.as_markdown(rows).splitlines()
     assert len(table) == 2 + len(rows)
     assert "| 231.94 mm | 231.9388 mm | reproduced |" in table[2]
     assert "| 282 mm | 283.04 mm | differs |" in table[3]
     assert "| stated | holds |" in table[4]
     assert "| 231.94 mm | - |" in table[5]
-    assert printed.counts_as_markdown({3: rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 | 1 |"
-    assert printed.counts_as_markdown({3: rows}).splitlines()[3] == "| **all** | 1 | 1 | 1 | 1 | 4 | 1 |"
-    (remark,) = [line for line in printed.remarks_as_markdown(rows).splitlines() if "282" in line]
+    assert ledger_tables.counts_as_markdown({3: rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 | 1 |"
+    assert (
+        ledger_tables.counts_as_markdown({3: rows}).splitlines()[3] == "| **all** | 1 | 1 | 1 | 1 | 4 | 1 |"
+    )
+    (remark,) = [line for line in ledger_tables.remarks_as_markdown(rows).splitlines() if "282" in line]
     assert "282 mm | To every digit." in remark
     assert remark.endswith(": 283.04 mm |")
 
@@ -165,7 +167,7 @@ def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
 def test_a_bar_in_a_cell_does_not_end_it():
     value = printed.PrintedValue(**(ENTRY | {"how": "where |σ| > 1"}))
     row = printed.LedgerRow(value, 231.94, printed.REPRODUCED)
-    line = printed.remarks_as_markdown([row]).splitlines()[-1]
+    line = ledger_tables.remarks_as_markdown([row]).splitlines()[-1]
     assert r"where \|σ\| > 1" in line
     assert line.replace(r"\|", "").count("|") == 5
 
@@ -173,7 +175,7 @@ def test_a_bar_in_a_cell_does_not_end_it():
 def test_all_rows_are_written_as_one_table(tmp_path):
     entries = (printed.PrintedValue(**ENTRY), printed.PrintedValue(**(ENTRY | {"id": "b", "printed": True})))
     rows = printed.ledger(entries, {ENTRY["id"]: 231.94, "b": True})
-    path = printed.save_csv({3: rows[:1], 4: rows[1:]}, tmp_path / "new" / "ledger.csv")
+    path = ledger_tables.save_csv({3: rows[:1], 4: rows[1:]}, tmp_path / "new" / "ledger.csv")
     with path.open(encoding="utf-8-sig", newline="") as stream:
         table = list(csv.DictReader(stream))
     assert [(row["chapter"], row["id"], row["computed"]) for row in table] == [

@@ -294,6 +294,7 @@ def test_largest_load_of_a_gearbox_is_that_of_its_steady_response_at_speeds_and_
 
 
 @pytest.mark.slow
+@pytest.mark.takes(40)
 def test_models_are_those_of_the_report_and_of_single_searches(tmp_path):
     text = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
     text = text.replace("lowest_speed_rpm: 100", "lowest_speed_rpm: 625").replace(

@@ -111,6 +111,7 @@ def test_along_the_force_and_the_gap():
 
 
 @pytest.mark.slow
+@pytest.mark.takes(10)
 def test_a_closed_family_has_the_same_special_places_from_wherever_it_starts():
     """Motions of three periods under a strong force form a loop of their own."""
 

@@ -66,6 +66,7 @@ def test_no_error_passes_ten_times_its_estimate(kind):
 
 
 @pytest.mark.slow
+@pytest.mark.takes(20)
 @pytest.mark.parametrize("kind", error_systems.KINDS)
 def test_no_error_of_two_thousand_systems_passes_ten_times_its_estimate(kind):
     held(kind, range(error_systems.EACH))

@@ -16,6 +16,13 @@ def waited(seconds):
     return os.getpid()
 
 
+def waited_for(path):
+    """Until there is a file; at the latest after half a minute, when all others are done."""
+    end = time.monotonic() + 30.0
+    while not path.exists() and time.monotonic() < end:
+        time.sleep(0.01)
+
+
 def broken():
     raise ArithmeticError("nothing is known")
 
@@ -32,12 +39,13 @@ def test_in_this_process_the_most_urgent_first_then_the_first_added():
     assert found == ["first", "second", "brought along", "third", "last"]
 
 
-def test_what_comes_of_a_short_task_does_not_wait_for_a_long_one():
+def test_what_comes_of_a_short_task_does_not_wait_for_a_long_one(tmp_path):
+    done = tmp_path / "done"
     with Crew(jobs=2) as crew:
         crew.add("start", 9.0, waited, 0.0)
         # Both processes are there.
         assert next(crew.results())[0] == "start"
-        crew.add("long", 9.0, waited, 3.0)
+        crew.add("long", 9.0, waited_for, done)
         crew.add("short", 8.0, waited, 0.0)
         found = []
         for name, process in crew.results():
@@ -45,6 +53,8 @@ def test_what_comes_of_a_short_task_does_not_wait_for_a_long_one():
             assert process != os.getpid()
             if name == "short":
                 crew.add("of the short one", 0.0, waited, 0.0)
+            if name == "of the short one":
+                done.touch()
     assert found == ["short", "of the short one", "long"]
 
 

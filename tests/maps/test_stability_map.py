@@ -39,6 +39,7 @@ def _small_models_stand_for_large_ones():
 
 
 TURN = 2.0 * np.pi
+COSINE = PiecewiseChebyshev.fit(lambda x, piece: np.cos(TURN * x), [0.0])
 
 
 @dataclass(frozen=True)
@@ -50,9 +51,8 @@ class Mathieu:
     frequency: float = 1.0
 
     def system(self, speed: float) -> PeriodicSystem:
-        wave = PiecewiseChebyshev.fit(lambda x, piece: np.cos(TURN * x), [0.0])
         load = ContactLoad(
-            PiecewiseChebyshev.constant([1.0]), self.modulation * self.frequency**2, weight=wave
+            PiecewiseChebyshev.constant([1.0]), self.modulation * self.frequency**2, weight=COSINE
         )
         return PeriodicSystem([[1.0]], [[self.damping]], [[self.frequency**2]], [load], TURN / speed)
 

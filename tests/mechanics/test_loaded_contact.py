@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.misalignment import Misalignment
 from facegear.geometry.point_contact import UnloadedContact
@@ -316,12 +317,23 @@ def test_where_no_unloaded_pair_touches_the_nearest_one_carries_the_load(law, to
     np.testing.assert_allclose(carried, torque / drive.base_radius, rtol=1e-9)
 
 
-@pytest.mark.parametrize("law", ["slice", "plate"])
+@pytest.mark.parametrize("law", ["slice", pytest.param("plate", marks=pytest.mark.slow)])
 def test_a_load_that_is_lost_in_rounding_is_refused(law):
     drive = Drive(53, 152, 9.7e-3, math.radians(24.9), shaper_teeth=56)
     contact = LoadedContact(drive, 1e-8, Misalignment(offset=-0.006637444929717929), compliance=law)
     with pytest.raises(ArithmeticError, match=r"approach did not settle|contact changes at instants"):
         _ = contact.contact_ratio
+
+
+def test_a_period_that_no_series_follows_is_refused_of_plates_too(monkeypatch):
+    """What the load above comes to with plates, after seconds."""
+
+    def jumps(*_, **__):
+        raise ValueError("function is not smooth")
+
+    monkeypatch.setattr(PiecewiseChebyshev, "fit_together", jumps)
+    with pytest.raises(ArithmeticError, match="contact changes at instants that were not found: function is"):
+        _ = LoadedContact(CUT, 10.0, compliance="plate").contact_ratio
 
 
 def test_edges_that_lie_close_together_are_told_apart_or_taken_as_one():

@@ -27,9 +27,10 @@ from facegear.mechanics.disk import (
     reference_stiffness,
     shape_vector,
 )
+from facegear.mechanics.pinions_on_disk import nominal_pinion_mass
 from facegear.mechanics.plate import Body
 from facegear.mechanics.properties import MeshLoad
-from facegear.mechanics.transverse import Transverse, contact_shape, nominal_pinion_mass, rotated
+from facegear.mechanics.transverse import Transverse, contact_shape, rotated
 from facegear.support.parameters import rad_per_s
 from facegear.symbolic import galerkin
 from tests.independent.complex_galerkin import ComplexDisk, Pinion

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from facegear.geometry.kinematics import ContactPath
 from facegear.mechanics.disk import disk_stiffness, reference_stiffness
+from facegear.mechanics.pinions_on_disk import nominal_pinion_mass
 from facegear.mechanics.plate import Body
-from facegear.mechanics.transverse import nominal_pinion_mass
 from facegear.support.labelled import variable
 from facegear.support.parameters import rad_per_s
 

@@ -126,7 +126,7 @@ def stability_maps(
     charts : mapping of str to xarray.Dataset
         Title to the arrays of :func:`compendium.datasets.transverse.stability_figure`.
     windows : mapping of str to sequence of (float, float)
-        The same titles to what :func:`compendium.datasets.transverse.tongue_free` returns; empty for none.
+        The same titles to what :func:`compendium.datasets.map_readings.tongue_free` returns; empty for none.
     """
     figure, axes = panels(len(charts), 1, 3.4 * len(charts))
     largest = _largest(list(charts.values()))
@@ -153,7 +153,7 @@ def wide_maps(
     charts : mapping of str to xarray.Dataset
         Title to the arrays of :func:`compendium.datasets.transverse.growth_map`.
     windows : mapping of str to sequence of (float, float)
-        The same titles to what :func:`compendium.datasets.transverse.tongue_free` returns.
+        The same titles to what :func:`compendium.datasets.map_readings.tongue_free` returns.
     marks : mapping of str to mapping of str to float
         The same titles to names and heights of lines to draw.
     """

@@ -10,7 +10,7 @@ from facegear.drives.studies.study import Quantity, Settings
 from facegear.floquet.models import Model, replace_parameter, value_of
 from facegear.mechanics.plate import Body
 from facegear.mechanics.properties import MeshLoad
-from facegear.support.parameters import named, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 ModelT = TypeVar("ModelT", bound=Model)
 
@@ -43,13 +43,6 @@ def bearing_stiffness_control(load: MeshLoad) -> Quantity:
 def pinion_mass_control(load: MeshLoad, least: float) -> Quantity:
     """Return the control of τ from the least on, at first where that of a load is."""
     return Quantity("mass", "pinion mass τ", least, 2.0, load.mass, 0.05, parameter="load.mass")
-
-
-def require_kind(name: str, value: object, *kinds: type) -> None:
-    """Refuse what a study cannot show."""
-    if not isinstance(value, kinds):
-        wanted = " or ".join(f"a {kind.__name__}" for kind in kinds)
-        raise TypeError(f"{name} must be {wanted} for this study, got {named(value)}")
 
 
 def parameter_control(

@@ -12,7 +12,6 @@ from facegear.drives.studies.controls import (
     RPM,
     bearing_stiffness_control,
     pinion_mass_control,
-    require_kind,
     speed_control,
     thickness_control,
 )
@@ -22,6 +21,7 @@ from facegear.floquet.models import Model
 from facegear.mechanics import cases
 from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.transverse import Transverse
+from facegear.support.kinds import require_kind
 
 # Angles that the second and third pinion have when they are first switched on [°].
 _SECOND, _THIRD = 120.0, 240.0
@@ -48,7 +48,7 @@ def drive_study(model: Transverse | None = None, highest_speed_rpm: float = 1000
         force presses elsewhere than can be chosen.
     """
     start = cases.FIGURES["4.4a"].model() if model is None else model
-    require_kind("model", start, Transverse)
+    require_kind("model", start, Transverse, why="for this study")
     speed = speed_control(highest_speed_rpm)
     body, drive, load = start.body, start.body.drive, start.load
     require_lines(start.contact, drive)

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from facegear.drives.studies.controls import (
     parameter_control,
-    require_kind,
     speed_control,
     with_parameters,
 )
@@ -15,6 +14,7 @@ from facegear.floquet.models import Model, value_of
 from facegear.mechanics import gearboxes
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.torsional import Torsional
+from facegear.support.kinds import require_kind
 
 
 def gearbox_study(
@@ -35,8 +35,8 @@ def gearbox_study(
     Study
     """
     start = gearboxes.FIGURES["7.12a"].model() if model is None else model
-    require_kind("model", start, Torsional)
-    require_kind("gearbox of the model", start.gearbox, gearboxes.ProportionalGearbox)
+    require_kind("model", start, Torsional, why="for this study")
+    require_kind("gearbox of the model", start.gearbox, gearboxes.ProportionalGearbox, why="for this study")
     controls = (
         parameter_control(start, "gear_inertia", "gear inertia J₂/J₁", 1.0, 100.0, 1.0),
         parameter_control(start, "load_inertia", "load inertia Jₒ/J₁", 1.0, 100.0, 1.0),
@@ -73,8 +73,8 @@ def shafts_study(model: HeavyShafts | None = None, highest_speed_rpm: float = 10
     Study
     """
     start = HeavyShafts(gearboxes.FIGURES["7.12a"].model(), 0.3, 0.3, modes=1) if model is None else model
-    require_kind("model", start, HeavyShafts)
-    require_kind("gearbox of the model", start.gearbox, gearboxes.ProportionalGearbox)
+    require_kind("model", start, HeavyShafts, why="for this study")
+    require_kind("gearbox of the model", start.gearbox, gearboxes.ProportionalGearbox, why="for this study")
     controls = (
         parameter_control(start, "input_length", "length of the input shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
         parameter_control(start, "output_length", "length of the output shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
@@ -104,7 +104,7 @@ def damage_study(model: Torsional | None = None, highest_speed_rpm: float = 1000
         Its damping coefficients stay what they are.
     """
     intact = gearboxes.FIGURES["7.12b"].model() if model is None else model
-    require_kind("model", intact, Torsional)
+    require_kind("model", intact, Torsional, why="for this study")
     # In SI, where no damping is a multiple of a stiffness.
     start = replace(intact, gearbox=intact.gearbox.in_si)
     parts = {"input_stiffness": "input shaft", "output_stiffness": "output shaft", "mesh_stiffness": "teeth"}

@@ -10,7 +10,6 @@ from facegear.drives.studies.controls import (
     DEGREE,
     bearing_stiffness_control,
     pinion_mass_control,
-    require_kind,
     speed_control,
     thickness_control,
 )
@@ -23,6 +22,7 @@ from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.sharing import RULES
 from facegear.mechanics.tooth_stiffness import mesh_stiffness
 from facegear.mechanics.two_gears import TwoGears
+from facegear.support.kinds import require_kind
 
 ALONE, FRONT, BOTH, BETWEEN = "one", "two on one face", "one on either face", "one between two gears"
 """How pinions may stand in :func:`teeth_study`."""
@@ -52,7 +52,7 @@ def teeth_study(model: MeshOscillator | None = None, highest_speed_rpm: float = 
         rigid = cases.FIGURES["4.4a"].model()
         stiffness = mesh_stiffness(rigid.body.drive, correction_factor=0.5)
         model = MeshOscillator(rigid.body, rigid.load, mesh_stiffness=stiffness, mesh_damping=1e-5)
-    require_kind("model", model, MeshOscillator)
+    require_kind("model", model, MeshOscillator, why="for this study")
     start, body, load, speed = model, model.body, model.load, speed_control(highest_speed_rpm)
     if len(start.pinion_angles) > 1 or start.sides is not None or start.phases is not None:
         raise ValueError(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from compendium.datasets import meshing as meshing_arrays
+from compendium.datasets import tooth_limits as limit_arrays
 from facegear import Drive
 from tests.figures import check_round_trip
 
@@ -19,10 +20,10 @@ DRIVE = Drive(26, 130, 3.175e-3)
         meshing_arrays.contact_centroid_motion(DRIVE, 1.5, samples=21),
         meshing_arrays.mesh_length(DRIVE, 1.5, samples=21),
         meshing_arrays.skew_lines(DRIVE, 1.5, samples=21),
-        meshing_arrays.contact_ratios(DRIVE, (25, 26)),
-        meshing_arrays.limits_against_shaft_angle(DRIVE, (80.0, 90.0)),
-        meshing_arrays.undercut_condition(DRIVE, (-0.1, 0.1)),
-        meshing_arrays.top_land(DRIVE, samples=5),
+        limit_arrays.contact_ratios(DRIVE, (25, 26)),
+        limit_arrays.limits_against_shaft_angle(DRIVE, (80.0, 90.0)),
+        limit_arrays.undercut_condition(DRIVE, (-0.1, 0.1)),
+        limit_arrays.top_land(DRIVE, samples=5),
     ],
     ids=lambda dataset: next(iter(dataset.data_vars)),
 )
@@ -63,4 +64,4 @@ def test_skew_line_starts_outside_and_ends_inside():
 
 def test_broken_gear_ratio_is_refused():
     with pytest.raises(ValueError, match="131/26"):
-        meshing_arrays.contact_ratios(Drive(26, 131, 3.175e-3), (25,))
+        limit_arrays.contact_ratios(Drive(26, 131, 3.175e-3), (25,))

@@ -6,6 +6,7 @@ import pytest
 import xarray as xr
 
 from compendium.datasets import disk as disk_arrays
+from compendium.datasets import map_readings
 from compendium.datasets import transverse as arrays
 from compendium.plotting import transverse as draw
 from facegear.floquet.models import replace_parameter
@@ -62,16 +63,16 @@ def blind_chart(parameter, values):
 def test_windows_end_where_a_search_finds_what_lies_between_the_speeds_of_a_map():
     values = [0.25, 1.0, 1.8, 1.9, 2.0, 2.3, 3.0]
     # Above the window differences with the lowest modes open, near 400 rpm; a map of one speed sees neither kind.
-    ((low, high),) = arrays.tongue_free(MODEL, blind_chart("stiffness", values), 350.0)
+    ((low, high),) = map_readings.tongue_free(MODEL, blind_chart("stiffness", values), 350.0)
     assert (low, high) == (1.8, 2.0)
-    assert arrays.tongue_free(MODEL, blind_chart("stiffness", values[:2]), 500.0) == ()
-    assert arrays.tongue_free(MODEL, blind_chart("stiffness", values[-2:]), 350.0) == ()
+    assert map_readings.tongue_free(MODEL, blind_chart("stiffness", values[:2]), 500.0) == ()
+    assert map_readings.tongue_free(MODEL, blind_chart("stiffness", values[-2:]), 350.0) == ()
 
 
 def test_unstable_rows_part_the_windows():
     chart = blind_chart("stiffness", [1.8, 1.85, 1.9, 1.95, 2.0])
     chart["growth_rate"][2] = 1.0
-    assert arrays.tongue_free(MODEL, chart, 500.0) == ((1.8, 1.85), (1.95, 2.0))
+    assert map_readings.tongue_free(MODEL, chart, 500.0) == ((1.8, 1.85), (1.95, 2.0))
 
 
 @pytest.mark.parametrize(
@@ -90,9 +91,9 @@ def test_share_and_intervals_of_known_growth():
     growth = xr.DataArray(
         [1.0, -1.0, -1.0, 1.0, 3.0, -1.0], dims="speed_rpm", coords={"speed_rpm": np.arange(6.0)}
     )
-    assert arrays.unstable_runs(growth) == [(0.0, 0.5), (2.5, 4.75)]
-    assert arrays.unstable_share(xr.Dataset({"growth_rate": growth})) == 0.5
-    assert arrays.unstable_runs(-abs(growth)) == []
+    assert map_readings.unstable_runs(growth) == [(0.0, 0.5), (2.5, 4.75)]
+    assert map_readings.unstable_share(xr.Dataset({"growth_rate": growth})) == 0.5
+    assert map_readings.unstable_runs(-abs(growth)) == []
 
 
 def test_convergence_starts_from_the_model_itself(line, tmp_path):
