@@ -6,7 +6,8 @@ import numpy as np
 from hypothesis import settings
 from hypothesis import strategies as st
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from tests.independent.monodromy import TURN
 

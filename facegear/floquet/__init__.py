@@ -1,7 +1,8 @@
 """The engine: stability of linear systems with periodic coefficients (chapter 2). It knows nothing of gears.
 
-Systems: `periodic` has the equations, `loads` what varies in them, `piecewise` and `series` the series they are made
-of, `models` what makes a system at each speed, `modified_models` such as are made of others.
+Systems: `periodic` has the equations, `loads` what varies in them, `load_columns` its parameters for many values,
+`rigid_motion` what meets no load, `piecewise` and `series` the series they are made of; `models` says what makes a
+system at each speed, `modified_models` are made of others.
 
 Multipliers: `multipliers` has the transition matrix by one of four methods. `collocation` takes the modes of
 `free_modes`, the panels of `gauss_panels` and the equations of `contact_forces`; the others are `stepping`, `radau` and

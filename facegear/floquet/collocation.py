@@ -15,15 +15,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from facegear.floquet.contact_forces import ForcePanels, Nodes, at_nodes, in_place
-from facegear.floquet.contact_forces import mobilities as mobilities
-from facegear.floquet.free_modes import HeldSystems
-from facegear.floquet.free_modes import UnsuitableSystemError as UnsuitableSystemError
-from facegear.floquet.gauss_panels import gauss_rule, panel_edges
-from facegear.floquet.gauss_panels import within_reach as within_reach
+from facegear.floquet.contact_forces import ForcePanels, Nodes, at_nodes, in_place, mobilities
+from facegear.floquet.free_modes import HeldSystems, UnsuitableSystemError
+from facegear.floquet.gauss_panels import gauss_rule, panel_edges, within_reach
+from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.loads import weighted_shape
 from facegear.floquet.motion import MotionPanels, known_errors
-from facegear.floquet.periodic import LoadColumn, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import merge_breakpoints
 from facegear.support.quadrature import legendre_from_values
 from facegear.support.types import FloatArray

@@ -14,10 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.floquet.collocation import FreeMotion, mobilities
+from facegear.floquet.collocation import FreeMotion
+from facegear.floquet.contact_forces import mobilities
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.multipliers import Collocation, Method, transition_matrices, with_method
-from facegear.floquet.periodic import LoadColumn, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import finite_array

@@ -6,8 +6,9 @@ import dataclasses
 from dataclasses import dataclass
 
 from facegear.floquet.models import Coordinate, Model, require_model, system_at
-from facegear.floquet.periodic import PeriodicSystem, without_rigid_motion
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.rigid_motion import without_rigid_motion
 from facegear.support.kinds import named
 
 
@@ -15,7 +16,7 @@ from facegear.support.kinds import named
 class WithoutRigidMotion:
     """A model whose rigid-body motions are taken out at each speed.
 
-    See :func:`facegear.floquet.periodic.without_rigid_motion`.
+    See :func:`facegear.floquet.rigid_motion.without_rigid_motion`.
 
     Parameters
     ----------

@@ -23,9 +23,11 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from facegear.floquet import collocation
-from facegear.floquet.collocation import UnsuitableSystemError
+from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.gauss_panels import within_reach
+from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.motion import MotionPanels
-from facegear.floquet.periodic import LoadColumn, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.stepping import Family, aligned_edges, gauss_magnus, midpoint
 from facegear.support.parameters import integer_at_least, keep, within
 from facegear.support.types import ComplexArray, FloatArray
@@ -174,7 +176,7 @@ class AdaptiveMagnus:
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """See :class:`Method`."""
-        start = max(4, collocation.within_reach(family.fastest_angle / 3.0))
+        start = max(4, within_reach(family.fastest_angle / 3.0))
         factor, further, settled = 1, self._further, False
         row = [family.product(aligned_edges(family.breakpoints, start, factor), gauss_magnus)]
         while True:

@@ -10,7 +10,8 @@ import numpy as np
 
 from facegear.floquet.collocation import chain
 from facegear.floquet.compiled import where_compiled
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, have_one_course, require_system
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem, have_one_course, require_system
 from facegear.floquet.piecewise import SAME_INSTANT, PiecewiseChebyshev, Side, same_function
 from facegear.support.types import ComplexArray, FloatArray
 

@@ -27,8 +27,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from facegear.floquet.collocation import UnsuitableSystemError
 from facegear.floquet.compiled import LANES, where_compiled
+from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.piecewise import same_function
 from facegear.floquet.stepping import Family, aligned_edges
 from facegear.support.parameters import keep, within

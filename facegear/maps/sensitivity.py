@@ -19,9 +19,10 @@ from typing import Any
 
 import numpy as np
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Model, parameter_path, replace_at, value_of
 from facegear.floquet.multipliers import Method, with_method
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import Side
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family

@@ -31,7 +31,6 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from facegear.floquet.collocation import UnsuitableSystemError
 from facegear.floquet.columns import (
     LOWEST_DEGREE,
     Evaluate,
@@ -41,6 +40,8 @@ from facegear.floquet.columns import (
     family_matrices,
 )
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.models import (
     Model,
     is_whole_number,
@@ -57,7 +58,7 @@ from facegear.floquet.multipliers import (
     rounding_shift,
     with_method,
 )
-from facegear.floquet.periodic import LoadColumn, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.sheets import SHEET_TOLERANCE, Sheet, is_interpolated, samples, windows
 from facegear.floquet.stepping import Family

@@ -19,7 +19,8 @@ from facegear.floquet.labels import Combination, Kind, combination
 from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.floquet.multipliers import Method, multipliers
-from facegear.floquet.periodic import PeriodicSystem, rigid_motions
+from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.rigid_motion import rigid_motions
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
 from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of

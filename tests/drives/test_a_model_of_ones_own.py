@@ -14,9 +14,10 @@ from facegear.drives import explore, explorer, report_arrays
 from facegear.drives.cell import cell_detail
 from facegear.drives.cell_figure import cell_figure
 from facegear.drives.studies.study import Quantity, Study
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate, replace_parameter
 from facegear.floquet.multipliers import growth_rate, multipliers
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from facegear import floquet
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.multipliers import (
     AdaptiveMagnus,
     AlignedStepwise,
@@ -15,7 +16,7 @@ from facegear.floquet.multipliers import (
     Stepwise,
     transition_matrix,
 )
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.floquet.taylor import Taylor

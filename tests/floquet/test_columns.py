@@ -12,8 +12,9 @@ from facegear.floquet.columns import (
     interpolated_spectral_radii,
     resolved,
 )
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.multipliers import multipliers
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from tests.resonance_systems import CHECK, TURN
 

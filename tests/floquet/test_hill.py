@@ -13,7 +13,8 @@ from facegear.floquet.hill import (
     logarithms,
     without_sorting,
 )
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
+from facegear.floquet.loads import ContactLoad, StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics.classical import Hill, Mathieu, square_wave
 from facegear.mechanics.gearboxes import FIGURES

@@ -11,8 +11,9 @@ from scipy.optimize import brentq
 
 from facegear.floquet import averaging, hsu
 from facegear.floquet.band_speeds import band_speeds
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.modal import modal_expansion, standard_form
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from tests.independent.monodromy import TURN, fitted_order, floquet_border, floquet_growth, pieces_growth
 from tests.resonance_systems import (

@@ -6,8 +6,9 @@ import pytest
 from facegear.floquet.band_speeds import band_speeds
 from facegear.floquet.hsu import resonance_bands
 from facegear.floquet.labels import Combination, combination, moving_parts
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.maps.tracing import tongues

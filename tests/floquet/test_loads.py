@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from facegear.floquet.loads import ContactLoad, StateJump
 from facegear.floquet.multipliers import (
     AdaptiveMagnus,
     AlignedStepwise,
@@ -19,9 +20,10 @@ from facegear.floquet.multipliers import (
     multipliers,
     transition_matrix,
 )
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump, without_rigid_motion
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
+from facegear.floquet.rigid_motion import without_rigid_motion
 from facegear.floquet.stepping import Family
 from facegear.maps.stability_map import stability_map
 from tests.independent.monodromy import integrated

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from facegear.floquet import stepping
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.multipliers import (
     FIRST,
     GENERAL,
@@ -26,7 +27,7 @@ from facegear.floquet.multipliers import (
     transition_matrix,
     with_method,
 )
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.floquet.stepping import exponentials, gauss_magnus

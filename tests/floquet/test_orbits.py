@@ -8,9 +8,10 @@ from scipy.optimize import brentq, fsolve
 
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.contact_panels import Panels
+from facegear.floquet.loads import ContactLoad, StateJump
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.orbits import periodic_orbit
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.response import steady_response
 from facegear.floquet.transients import settled

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
+from facegear.floquet.loads import ContactLoad, StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series, merge_breakpoints
 
 KINKS = np.array([0.1, 0.55, 0.7])

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from facegear.floquet import multipliers as floquet
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import replace_parameter
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau, _graded_edges, _rule
 from facegear.floquet.stepping import Family

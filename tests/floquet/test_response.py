@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from facegear.floquet import collocation
 from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.labels import Resonance, resonance
+from facegear.floquet.loads import ContactLoad, StateJump
 from facegear.floquet.modified_models import Excited
 from facegear.floquet.multipliers import AdaptiveMagnus, Collocation, growth_rate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.floquet.response import steady_response

@@ -7,10 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.modified_models import WithoutRigidMotion
 from facegear.floquet.multipliers import growth_rate, multipliers
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, rigid_motions, without_rigid_motion
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
+from facegear.floquet.rigid_motion import rigid_motions, without_rigid_motion
 from facegear.maps.tracing import tongues
 from facegear.mechanics.cases import FIGURES
 from facegear.mechanics.classical import Mathieu, cosine_wave

@@ -7,8 +7,9 @@ import pytest
 
 from facegear.floquet import taylor
 from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.loads import ContactLoad, StateJump
 from facegear.floquet.multipliers import AdaptiveMagnus, transition_matrices
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.stepping import Family
 from facegear.floquet.taylor import Taylor

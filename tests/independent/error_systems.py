@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
+from facegear.floquet.loads import ContactLoad, StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 
 STORED = Path(__file__).with_suffix(".npz")

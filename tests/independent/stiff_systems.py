@@ -6,7 +6,8 @@ The product of two matrix exponentials in mpmath: no code of the package, and no
 import mpmath
 import numpy as np
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 
 KINDS = ("undamped", "damped", "overdamped", "stiff", "contact", "rigid")

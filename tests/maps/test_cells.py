@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import AdaptiveMagnus, growth_rate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps import cells as module
 from facegear.maps import stability_map as engine

@@ -7,7 +7,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from facegear.floquet.labels import Combination
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.loads import ContactLoad
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.lobes import StableRangeError, UnstableTopError, highest_lobes
 from facegear.maps.tracing import Tongue

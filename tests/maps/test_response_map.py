@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from facegear.drives.studies.gearbox import gearbox_study
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate, replace_parameter
 from facegear.floquet.modified_models import Excited, WithoutRigidMotion
 from facegear.floquet.multipliers import growth_rate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.response import steady_response
 from facegear.maps.response_map import frequency_response, response_map

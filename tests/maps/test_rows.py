@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.maps.rows import in_rows

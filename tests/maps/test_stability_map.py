@@ -12,9 +12,10 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from benchmarks.synthetic_disk import contact_shape, disk_matrices
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import AdaptiveMagnus, Stepwise, growth_rate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.maps import parallel

@@ -9,9 +9,10 @@ from scipy.optimize import brentq
 
 from facegear.floquet import multiplier_curves
 from facegear.floquet.hsu import resonance_bands
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.floquet.multipliers import growth_rate
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.maps import parallel, tracing

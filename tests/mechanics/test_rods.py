@@ -6,7 +6,8 @@ import sympy as sp
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem, StateJump
+from facegear.floquet.loads import ContactLoad, StateJump
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics.exact_rods import count_below, exact_frequencies
 from facegear.mechanics.properties import STEEL

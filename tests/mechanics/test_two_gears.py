@@ -7,9 +7,10 @@ import pytest
 
 import facegear as fg
 from facegear.design.envelope import disk_growth_rate
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.modes import natural_exponents
 from facegear.floquet.multipliers import growth_rate, multipliers
-from facegear.floquet.periodic import ContactLoad, PeriodicSystem
+from facegear.floquet.periodic import PeriodicSystem
 from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import Contact
