@@ -127,20 +127,39 @@ def test_the_critical_motion_is_the_one_that_was_put_in(route, pair):
     assert both == pytest.approx(np.einsum("vi,vj->vij", right, left), abs=1e-8)
 
 
-@pytest.mark.parametrize("kind", ["double", "defective"])
-def test_eigenvalues_that_coincide_are_left_to_lapack(kind, asked_again):
-    pytest.importorskip("facegear.floquet.lockstep_vectors", exc_type=ImportError)
+def with_block(block):
+    """Ordinary matrices, and as number 7 one with a block like this."""
     matrices, slopes = random(6)
     turned = np.linalg.qr(matrices[7])[0]
-    block = np.diag([1.0, 1.0, 2.0, 3.0, 4.0, 5.0])
-    block[0, 1] = 1.0 if kind == "defective" else 0.0
     matrices[7] = turned @ block @ turned.T
+    return matrices, slopes
+
+
+def test_eigenvalues_that_coincide_are_left_to_lapack(asked_again):
+    pytest.importorskip("facegear.floquet.lockstep_vectors", exc_type=ImportError)
+    matrices, slopes = with_block(np.diag([1.0, 1.0, 2.0, 3.0, 4.0, 5.0]))
     found = change(matrices, slopes)
     assert asked_again == [1]
     alone = change(matrices[7:8], slopes[7:8])
     size = np.count_nonzero(alone.values)
     assert np.sort(found.values[7].real)[-size:] == pytest.approx(np.sort(alone.values[0].real), abs=1e-6)
     assert found.direct[7][:size, :size] == pytest.approx(alone.direct[0][:size, :size], rel=1e-6)
+
+
+def test_vectors_of_a_defective_matrix_are_such_to_rounding(route):
+    """Rounding parts its double eigenvalue by some 1e-8, into a pair or two real ones, as it happens."""
+    block = np.diag([1.0, 1.0, 2.0, 3.0, 4.0, 5.0])
+    block[0, 1] = 1.0
+    matrices, _ = with_block(block)
+    values, right, left = (part[7] for part in module._vectors(matrices, 0.0))
+    there = values != 0.0
+    values, columns, rows = values[there], *(part[0, there] + 1j * part[1, there] for part in (right, left))
+    assert np.abs(values - np.rint(values.real)).max() < 1e-6
+    left_over = np.abs(matrices[7] @ columns.T - values * columns.T).max(axis=0)
+    assert (left_over <= 1e-12 * np.abs(columns).max(axis=1)).all()
+    left_over = np.abs(rows @ matrices[7] - values[:, np.newaxis] * rows).max(axis=1)
+    # Of two dependent vectors LAPACK's inverse is one of a matrix that is off by 1e-15.
+    assert (left_over <= 1e-6 * np.abs(rows).max(axis=1)).all()
 
 
 @pytest.mark.parametrize("fault", ["vector", "growth", "not a number"])
