@@ -36,6 +36,11 @@ _BASIS = "nodal circles, diameters"
 PAGE = "assessment.html"
 """Name of the page among the files of an assessment."""
 
+_ARRAYS = ("models", "torsion_response", "torsion_response_peaks", "disk_response", "disk_response_peaks")
+_TABLES = ("models", "tolerances", "disk_response", "disk_response_peaks")
+FILES = (PAGE, *(f"{name}.nc" for name in _ARRAYS), *(f"{name}.csv" for name in _TABLES))
+"""Names of all files that an assessment may have."""
+
 
 def sections(found: Assessment) -> tuple[Section, ...]:
     """Sections of the page: verdict, models, tolerances, dynamic load, what was left out."""
@@ -248,7 +253,7 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
     ----------
     found : Assessment
     folder : str or Path
-        If it is there already, files of the same name are replaced, and others stay.
+        If it is there already, files of an earlier assessment are replaced or removed, and others stay.
 
     Returns
     -------
@@ -261,7 +266,7 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
         If the folder cannot be written to.
     """
     table = found.table()
-    with folder_written_whole(Path(folder)) as place:
+    with folder_written_whole(Path(folder), FILES) as place:
         write_table(model_columns(table), place / "models.csv")
         labelled.save(table, place / "models.nc")
         if found.response is not None:

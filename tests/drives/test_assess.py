@@ -256,6 +256,19 @@ def test_the_page_shows_hostile_names_as_text(tmp_path):
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [PAGE, "models.csv", "models.nc"]
 
 
+def test_files_of_an_earlier_assessment_do_not_lie_beside_a_new_page(tmp_path):
+    earlier = ["disk_response_peaks.nc", "disk_response_peaks.csv", "torsion_response.nc", "tolerances.csv"]
+    for name in (*earlier, "my_notes.csv"):
+        (tmp_path / name).write_text("of another drive")
+    write_assessment(assessment(outcome("Tregold", DEAD, RIGID)), tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        PAGE,
+        "models.csv",
+        "models.nc",
+        "my_notes.csv",
+    ]
+
+
 def test_largest_load_of_a_gearbox_is_that_of_its_steady_response_at_speeds_and_at_peaks_between():
     file = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
     torque = file.requirements.power / file.requirements.pinion_speed * file.drive.gear_ratio
