@@ -87,7 +87,9 @@ def _outcome(case: WorstCase) -> str:
     if not case.swept:
         return f"{rest}; stable for all values elsewhere"
     words = f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"
-    if case.fastest is not None:
+    if case.fastest is None:
+        words += "; between the values looked at, so that it is not known how fast"
+    else:
         factors, tongue = case.fastest
         words += f"; fastest of the values looked at: {mechanism(tongue)}, {corner(factors, case.factors)}"
     return f"{words}; {rest}" if rest else words

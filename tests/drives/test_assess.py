@@ -105,7 +105,7 @@ class TestVerdict:
         assert found.decides == ("where in their tolerances stiffness, damping and speed lie",)
         assert found.over_tolerances == (
             "With stiffness ±10 %, speed ±2 %, force keeps its direction: unstable for some values at 200 to 290 rpm, "
-            "10 % of the speeds.",
+            "10 % of the speeds; between the values looked at, so that it is not known how fast.",
         )
         assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
 
@@ -146,7 +146,7 @@ class TestVerdict:
         )
         assert found.over_tolerances == (
             "With damping of teeth ±20 %, stiffness of shafts ±10 %, torsion: unstable for some values at 600 to 690 "
-            "rpm, 10 % of the speeds.",
+            "rpm, 10 % of the speeds; between the values looked at, so that it is not known how fast.",
         )
         assert told(found.always_stable) == "100 to 600, 690 to 1000 rpm"
 
