@@ -119,8 +119,9 @@ class Assessment:
     def always_stable(self) -> Intervals:
         """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable."""
         every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
-        every += [interval for case in self.worst.values() for interval in case.swept]
-        # What opens between two corners has no width that is known.
+        # Where it is not known, nothing is known to be stable.
+        every += [interval for case in self.worst.values() for interval in case.possible]
+        # What opens between two values has no width that is known.
         every += [(each.speed, each.speed) for case in self.worst.values() for each in case.opens]
         every += [interval for found in self.torsion.values() for interval in _intervals(found)]
         return gaps(united(every), self.speeds)
@@ -169,7 +170,7 @@ class Assessment:
 
     @property
     def mechanism(self) -> str:
-        """What grows fastest of all models, and at the corners of their tolerances, and how."""
+        """What grows fastest of all models, and at values in their tolerances, and how."""
         unstable = [(o.variant.name, tongue) for o in self.outcomes for tongue in o.tongues]
         unstable += [(f"torsion; {name}", t) for name, found in self.torsion.items() for t in found]
         for name, case in self.worst.items():
@@ -177,7 +178,9 @@ class Assessment:
                 factors, tongue = case.fastest
                 unstable.append((f"{name}, tolerances; {corner(factors, case.factors)}", tongue))
         if not unstable:
-            return "nothing grows at the values of the file, nor at the corners of its tolerances"
+            return (
+                "nothing grows at the values of the file, nor at those of its tolerances that were looked at"
+            )
         # The first of equal ones, a model before a corner that is the same.
         name, strongest = max(unstable, key=lambda pair: pair[1].growth_rate)
         return f"{mechanism(strongest)} ({name})"

@@ -1,4 +1,4 @@
-"""Tables beside the page of an assessment: models, corners of tolerances, forced responses and their peaks."""
+"""Tables beside the page of an assessment: models, values in tolerances, forced responses and their peaks."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ def model_columns(table: xr.Dataset) -> dict[str, list[object]]:
 
 
 def corner_columns(worst: Mapping[str, WorstCase]) -> dict[str, list[object]]:
-    """List corners of tolerances row by row: a tongue, or that there is none."""
+    """List values in tolerances row by row: a tongue there, or that there is none."""
     headings = ("model", "corner", "label", "lower_rpm", "upper_rpm", "peak_rpm", "largest_growth_per_s")
     none = (math.nan,) * 3
     rows = [
         (name, corner(factors, case.factors), *one)
         for name, case in worst.items()
-        for factors, found in case.corners.items()
+        for factors, found in case.points.items()
         for one in (
             [(t.label, *(float(rpm(x)) for x in (t.lower, t.upper, t.peak)), t.growth_rate) for t in found]
             or [("", *none, 0.0)]

@@ -136,19 +136,25 @@ def _tolerances(found: Assessment) -> Section:
     title = "Tolerances"
     if not found.worst:
         return Section(title, (Paragraph("The file has no section tolerances."),))
-    tables = tuple(_corners([name for name in found.worst if name != TORSION], found, "Corners of the range"))
+    tables = tuple(
+        _at_values([name for name in found.worst if name != TORSION], found, "Values in the range")
+    )
     if TORSION in found.worst:
-        tables += tuple(_corners([TORSION], found, "Corners of the range in torsion"))
+        tables += tuple(_at_values([TORSION], found, "Values in the range, in torsion"))
     words = Paragraph(
-        "Of the file's own contact and teeth. Between these corners a tongue that stands at both ends of a way has "
-        "swept all speeds between; where all are stable the largest growth is followed along the edges of the range."
+        "Of the file's own contact and teeth, at both ends and the middle of each stiffness and both ends of each "
+        "damping, over speeds so wide that no tongue comes into the range from outside unseen. Natural frequencies "
+        "rise with every stiffness: a tongue that stands at all of these values has swept all speeds between its "
+        "places. One that stands at some of them may reach to the next, and there it is not known. Where none stands "
+        "at any, the largest growth is followed along the edges of the range. A tongue that stands nowhere but "
+        "between these values and edges would not be seen, and between them one may grow faster than at any."
     )
     return Section(title, (words, Listing(found.over_tolerances), *tables))
 
 
-def _corners(names: Sequence[str], found: Assessment, caption: str) -> Iterator[Table]:
-    """Give the corners of worst cases that have factors of the same."""
-    cases = {name: found.worst[name] for name in names if found.worst[name].corners}
+def _at_values(names: Sequence[str], found: Assessment, caption: str) -> Iterator[Table]:
+    """Give the values of worst cases that have factors of the same."""
+    cases = {name: found.worst[name] for name in names if found.worst[name].points}
     if not cases:
         return
     rows = tuple(
@@ -159,7 +165,7 @@ def _corners(names: Sequence[str], found: Assessment, caption: str) -> Iterator[
             *_fastest(tongues),
         )
         for name, case in cases.items()
-        for factors, tongues in case.corners.items()
+        for factors, tongues in case.points.items()
     )
     factors = next(iter(cases.values())).factors
     headings = ("model", *(f"{words}, times" for words in factors), "unstable [rpm]", *_FASTEST)
@@ -274,7 +280,7 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
             labelled.save(response_table(found.response, parameters), place / "torsion_response.nc")
             if (peaks := peaks_table(found.response, parameters)) is not None:
                 labelled.save(peaks, place / "torsion_response_peaks.nc")
-        if any(case.corners for case in found.worst.values()):
+        if any(case.points for case in found.worst.values()):
             write_table(corner_columns(found.worst), place / "tolerances.csv")
         if (response := found.response_table) is not None:
             labelled.save(response, place / "disk_response.nc")

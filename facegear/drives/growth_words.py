@@ -1,11 +1,11 @@
-"""What grows, how and where, in words: a tongue, and the worst of the corners of tolerances."""
+"""What grows, how and where, in words: a tongue, and the worst of values in tolerances."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from facegear.drives.findings import TORSION
-from facegear.drives.intervals import Intervals, in_rpm
+from facegear.drives.intervals import Intervals, cut, gaps, in_rpm
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
@@ -74,11 +74,22 @@ def _outcome(case: WorstCase) -> str:
         return f"not known ({case.unknown})"
     if case.is_stable:
         return "stable for all values"
-    if not case.swept:
+    if case.opens:
         speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
-        return f"stable at all corners; tongues open between them at {speeds} rpm"
+        return f"stable at all values looked at; tongues open between them at {speeds} rpm"
+    left = cut(gaps(case.swept, case.speeds), case.speeds)
+    left = tuple(part for one in left for part in cut(case.possible, one))
+    rest = (
+        f"not known at {told(left)}, where a tongue may come that stands at some of the values looked at only"
+        if left
+        else ""
+    )
+    if not case.swept:
+        return f"{rest}; stable for all values elsewhere"
     words = f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"
-    if case.fastest is not None:
+    if case.fastest is None:
+        words += "; between the values looked at, so that it is not known how fast"
+    else:
         factors, tongue = case.fastest
-        words += f"; fastest of the corners: {mechanism(tongue)}, {corner(factors, case.factors)}"
-    return words
+        words += f"; fastest of the values looked at: {mechanism(tongue)}, {corner(factors, case.factors)}"
+    return f"{words}; {rest}" if rest else words

@@ -42,6 +42,19 @@ def gaps(intervals: Sequence[tuple[float, float]], speeds: tuple[float, float]) 
     return tuple((start, stop) for start, stop in found if stop > start)
 
 
+def cut(intervals: Sequence[tuple[float, float]], speeds: tuple[float, float]) -> Intervals:
+    """Return what of intervals that are apart and ascend lies in a range.
+
+    Examples
+    --------
+    >>> cut([(0.5, 1.5), (2.0, 3.0), (4.5, 6.0)], (1.0, 5.0))
+    ((1.0, 1.5), (2.0, 3.0), (4.5, 5.0))
+    """
+    low, high = speeds
+    found = ((max(start, low), min(stop, high)) for start, stop in intervals)
+    return tuple((start, stop) for start, stop in found if stop > start)
+
+
 def in_rpm(intervals: Sequence[tuple[float, float]], most: int) -> str:
     """Intervals of speed [rad/s] in rpm: the widest by their ends, at most so many, and how many there are besides.
 

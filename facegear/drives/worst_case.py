@@ -1,27 +1,35 @@
 """Where a drive is unstable for some values in its tolerances.
 
-That is found from the borders of its tongues, not by drawing values: a tongue that stands at both ends of a way through
-the range has swept all speeds between, and where both ends are stable the largest growth rate is followed along the
-way, zeros of it that touch and turn back included.
+That is found from the tongues at a grid of values, not by drawing values: natural frequencies rise with every
+stiffness, and so a tongue moves one way, and has swept all speeds between the places where it stands. They are looked
+for in a wider range of speed, wide enough that none can come into the range from outside unseen. How far a tongue goes
+that stands at some of the values only is not known: up to the next value of the grid, and there all is left open.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import combinations, product
+from itertools import product
 from typing import Any
 
 import numpy as np
 
-from facegear.drives.intervals import united
+from facegear.drives.intervals import Intervals, cut, united
 from facegear.drives.tolerances import Toleranced, TolerancedGearbox, Tolerances
+from facegear.floquet.models import Model
+from facegear.floquet.multipliers import growth_rate
 from facegear.maps.closing import ClosingValue, growth_peaks
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.pinions_on_disk import FaceGears
 
 # Values along a way at which the largest growth is looked at before its zeros are found.
 _ALONG = 5
+# Part by which the search goes beyond the speeds from which tongues can come, for what of a frequency no spring makes.
+_MARGIN = 1.02
+
+Factors = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -32,21 +40,24 @@ class WorstCase:
     ----------
     speeds : tuple of float
         Range looked at, with its tolerance [rad/s].
-    corners : dict
-        Tongues by the factors, in the order of `factors`.
+    points : dict
+        What of the tongues lies in that range, by the factors at which they were looked for, in the order of `factors`.
     swept : tuple of tuple of float
         Intervals of speed [rad/s], ascending and apart, in which some value is unstable.
+    possible : tuple of tuple of float
+        Intervals in which that is so or cannot be excluded; these hold the others.
     opens : tuple of ClosingValue
-        Tongues that open between two stable corners.
+        Tongues that open between values at which all is stable.
     factors : tuple of str
-        What the corners have factors of, in words.
+        What the points have factors of, in words.
     unknown : str
         Why it is not known; empty if it is.
     """
 
     speeds: tuple[float, float]
-    corners: dict[tuple[float, ...], tuple[Tongue, ...]] = field(repr=False)
-    swept: tuple[tuple[float, float], ...]
+    points: dict[Factors, tuple[Tongue, ...]] = field(repr=False)
+    swept: Intervals
+    possible: Intervals
     opens: tuple[ClosingValue, ...]
     factors: tuple[str, ...] = ("stiffness", "damping")
     unknown: str = ""
@@ -54,12 +65,12 @@ class WorstCase:
     @property
     def is_stable(self) -> bool:
         """Whether all values are known to be stable at all speeds."""
-        return not self.swept and not self.opens and not self.unknown
+        return not self.possible and not self.opens and not self.unknown
 
     @property
-    def fastest(self) -> tuple[tuple[float, ...], Tongue] | None:
-        """Factors of the corner that grows fastest, and the tongue in which it does; None where all are stable."""
-        grown = [(factors, tongue) for factors, found in self.corners.items() for tongue in found]
+    def fastest(self) -> tuple[Factors, Tongue] | None:
+        """Factors of the point that grows fastest, and the tongue in which it does; None where all are stable."""
+        grown = [(factors, tongue) for factors, found in self.points.items() for tongue in found]
         return max(grown, key=lambda pair: pair[1].growth_rate, default=None)
 
     @property
@@ -82,8 +93,8 @@ def worst_case(model: FaceGears, speeds: tuple[float, float], tolerances: Tolera
     Returns
     -------
     WorstCase
-        What tongues sweep that stand, with one label, at both ends of a way between two corners, and what opens along
-        the edges between corners that are all stable.
+        Intervals that tongues of one label sweep which stand at all values looked at; those that others reach may be
+        unstable. What stands nowhere near is followed along the edges of the range, and what opens there found.
 
     Raises
     ------
@@ -121,7 +132,7 @@ def worst_case_in_torsion(torsional: Any, speeds: tuple[float, float], tolerance
     >>> from facegear.support.parameters import rad_per_s
     >>> box, speeds = FIGURES["7.12a"].model(), tuple(rad_per_s([600.0, 700.0]).tolist())
     >>> exact, found = (worst_case_in_torsion(box, speeds, Tolerances(shaft_stiffness=part)) for part in (0.0, 0.05))
-    >>> len(found.corners), found.share > exact.share > 0.0
+    >>> len(found.points), found.share > exact.share > 0.0
     (3, True)
     """
     parts = {
@@ -135,7 +146,8 @@ def worst_case_in_torsion(torsional: Any, speeds: tuple[float, float], tolerance
 
 def not_known(reason: str, speeds: tuple[float, float], tolerances: Tolerances) -> WorstCase:
     """Worst case that could not be computed, and why."""
-    return WorstCase(tolerances.widened(speeds), {}, (), (), (), reason)
+    wide = tolerances.widened(speeds)
+    return WorstCase(wide, {}, (), (wide,), (), (), reason)
 
 
 def _in_box(model: Any, parts: Mapping[str, float], wide: tuple[float, float]) -> WorstCase:
@@ -145,31 +157,56 @@ def _in_box(model: Any, parts: Mapping[str, float], wide: tuple[float, float]) -
     def at(factors: Sequence[float]) -> Any:
         return replace(model, **dict(zip(names.values(), factors, strict=True)))
 
-    ends = [tuple(dict.fromkeys((1.0 - part, 1.0 + part))) for part in parts.values()]
-    corners = dict.fromkeys([(1.0,) * len(parts), *product(*ends)])
-    found = {corner: tongues(at(corner), wide) for corner in corners}
-    intervals = [(tongue.lower, tongue.upper) for part in found.values() for tongue in part]
-    for first, second in combinations(found.values(), 2):
-        intervals += _between(first, second)
+    springs = {words: part for words, part in parts.items() if words.endswith("stiffness")}
+    levels = [
+        tuple(dict.fromkeys([1.0 - part, *([1.0] if words in springs else []), 1.0 + part]))
+        for words, part in parts.items()
+    ]
+    # No frequency changes by more than the root of what the stiffness changes by.
+    reach = max(math.sqrt((1.0 + part) / (1.0 - part)) for part in springs.values())
+    step = max(math.sqrt(1.0 / (1.0 - part)) for part in springs.values())
+    around = wide if reach == 1.0 else (wide[0] / (_MARGIN * reach), wide[1] * _MARGIN * reach)
+    points = dict.fromkeys([(1.0,) * len(parts), *product(*levels)])
+    found = {point: tongues(at(point), around, progress=False) for point in points}
+
+    swept: list[tuple[float, float]] = []
+    possible: list[tuple[float, float]] = []
+    for label in dict.fromkeys(tongue.label for each in found.values() for tongue in each):
+        here = [[t for t in each if t.label == label] for each in found.values()]
+        lower, upper = (
+            min(t.lower for each in here for t in each),
+            max(t.upper for each in here for t in each),
+        )
+        everywhere = all(here)
+        swept += [(lower, upper)] if everywhere else [(t.lower, t.upper) for each in here for t in each]
+        possible.append((lower, upper) if everywhere else (lower / step, upper * step))
     opens: list[ClosingValue] = []
     # Along each edge of the box: more stiffness may open a tongue between two corners, and so may more damping.
     for place, words in enumerate(parts):
-        if intervals or not parts[words]:
+        if possible or not parts[words]:
             continue
-        way = np.linspace(ends[place][0], ends[place][-1], _ALONG)
+        way = np.linspace(levels[place][0], levels[place][-1], _ALONG)
+        ends = [tuple(dict.fromkeys([each[0], each[-1]])) for each in levels]
         for corner in product(*ends[:place], ends[place][:1], *ends[place + 1 :]):
-            opens += growth_peaks(at(corner), names[words], way, wide).closing_values
-    return WorstCase(wide, found, united(intervals), tuple(opens), tuple(parts))
+            opens += growth_peaks(at(corner), names[words], way, around).closing_values
+    return WorstCase(
+        wide,
+        {point: _within(at(point), each, wide) for point, each in found.items()},
+        cut(united(swept), wide),
+        cut(united(possible), wide),
+        tuple(opens),
+        tuple(parts),
+    )
 
 
-def _between(first: Sequence[Tongue], second: Sequence[Tongue]) -> list[tuple[float, float]]:
-    """Return what tongues sweep on their way from one corner to another."""
-    swept = []
-    for label in dict.fromkeys(tongue.label for tongue in first):
-        here, there = ([t for t in part if t.label == label] for part in (first, second))
-        # Tongues of one label keep their order along speed; where their numbers differ it is not known which is which.
-        if len(here) == len(there):
-            swept += [
-                (min(a.lower, b.lower), max(a.upper, b.upper)) for a, b in zip(here, there, strict=True)
-            ]
-    return swept
+def _within(model: Model, found: Sequence[Tongue], wide: tuple[float, float]) -> tuple[Tongue, ...]:
+    """Cut tongues to a range of speed, with the largest growth there."""
+    low, high = wide
+    inside = []
+    for tongue in found:
+        lower, upper, peak = max(tongue.lower, low), min(tongue.upper, high), min(max(tongue.peak, low), high)
+        if lower < upper:
+            # Growth falls off from its peak: of what lies in the range it is largest at the end next to that.
+            growth = tongue.growth_rate if peak == tongue.peak else growth_rate(model.system(peak))
+            inside.append(replace(tongue, lower=lower, upper=upper, peak=peak, growth_rate=growth))
+    return tuple(inside)

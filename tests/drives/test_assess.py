@@ -98,45 +98,45 @@ class TestVerdict:
 
     def test_tolerances_turn_a_stable_drive(self):
         swept = ((float(rad_per_s(200.0)), float(rad_per_s(290.0))),)
-        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, {}, swept, ())}
+        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, {}, swept, swept, ())}
         file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1, speed=0.02))
         found = assessment(outcome("Tregold", DEAD, RIGID), worst=worst, file=file)
         assert found.verdict == "depends"
         assert found.decides == ("where in their tolerances stiffness, damping and speed lie",)
         assert found.over_tolerances == (
             "With stiffness ±10 %, speed ±2 %, force keeps its direction: unstable for some values at 200 to 290 rpm, "
-            "10 % of the speeds.",
+            "10 % of the speeds; between the values looked at, so that it is not known how fast.",
         )
         assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
 
-    def test_growth_at_a_corner_of_the_tolerances_is_told(self, tmp_path):
+    def test_growth_at_a_value_in_the_tolerances_is_told(self, tmp_path):
         """A corner that grows faster than every model at the values of the file is the worst, with its factors."""
         strong = replace(tongue(240, 260, 7.5), combination=Combination(1, 1, "mean", 0))
-        corners = {
+        points = {
             (1.0, 1.0): (tongue(200, 300),),
             (1.1, 0.8): (tongue(210, 290, 5.0), strong),
             (0.9, 0.8): (),
         }
-        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, corners, ((20.0, 30.0),), ())}
+        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, points, ((20.0, 30.0),), ((20.0, 30.0),), ())}
         file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1, damping=0.2))
         found = assessment(outcome("Tregold", DEAD, RIGID, tongue(200, 300)), worst=worst, file=file)
         said = f"flutter of the mean system, {strong.label} at 250 rpm, growing by 7.5 1/s"
         where = "with stiffness times 1.1, damping times 0.8"
         assert f"Worst: {said} ({DEAD}, tolerances; {where})." in found.headline
-        assert found.over_tolerances[0].endswith(f"; fastest of the corners: {said}, {where}.")
+        assert found.over_tolerances[0].endswith(f"; fastest of the values looked at: {said}, {where}.")
         text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
         assert all(words in text for words in ("growth [1/s]", strong.label, "7.5"))
         table = (tmp_path / "tolerances.csv").read_text(encoding="utf-8-sig")
         assert f'"{where}",{strong.label},240,260,250,7.5' in table
         assert '"with stiffness times 0.9, damping times 0.8",,nan,nan,nan,0' in table
         # The same rate at the values of the file is told of the model.
-        alone = {DEAD: replace(worst[DEAD], corners={(1.0, 1.0): (tongue(200, 300),)})}
+        alone = {DEAD: replace(worst[DEAD], points={(1.0, 1.0): (tongue(200, 300),)})}
         assert f"({outcome('Tregold', DEAD, RIGID).variant.name})" in replace(found, worst=alone).headline
 
     def test_tolerances_of_shafts_turn_torsion(self):
         swept = ((float(rad_per_s(600.0)), float(rad_per_s(690.0))),)
         speeds = CASE_1.requirements.speeds
-        worst = {TORSION: WorstCase(speeds, {}, swept, ())}
+        worst = {TORSION: WorstCase(speeds, {}, swept, swept, ())}
         file = replace(CASE_1, tolerances=Tolerances(damping=0.2, shaft_stiffness=0.1))
         stable = {"Tregold, arm as printed": ()}
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=stable, worst=worst, file=file)
@@ -146,7 +146,7 @@ class TestVerdict:
         )
         assert found.over_tolerances == (
             "With damping of teeth ±20 %, stiffness of shafts ±10 %, torsion: unstable for some values at 600 to 690 "
-            "rpm, 10 % of the speeds.",
+            "rpm, 10 % of the speeds; between the values looked at, so that it is not known how fast.",
         )
         assert told(found.always_stable) == "100 to 600, 690 to 1000 rpm"
 
@@ -158,6 +158,25 @@ class TestVerdict:
         assert found.over_tolerances == (
             "With stiffness ±10 %, force keeps its direction: not known (transition matrices jump).",
         )
+        # What is not known is not called stable.
+        assert found.always_stable == ()
+
+    def test_where_a_tongue_may_come_nothing_is_called_stable(self):
+        file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1))
+        at, around = (tuple(float(rad_per_s(x)) for x in part) for part in ((200.0, 290.0), (190.0, 300.0)))
+        points = {(1.0, 1.0): (), (0.9, 1.0): (tongue(200, 290, 2.0),)}
+        worst = {DEAD: WorstCase(file.requirements.speeds, points, (at,), (around,), ())}
+        found = assessment(outcome("Tregold", DEAD, RIGID), worst=worst, file=file)
+        assert told(found.always_stable) == "100 to 190, 300 to 1000 rpm"
+        (said,) = found.over_tolerances
+        assert "unstable for some values at 200 to 290 rpm, 10 % of the speeds" in said
+        assert "not known at 190 to 200, 290 to 300 rpm, where a tongue may come" in said
+        nowhere = {DEAD: replace(worst[DEAD], points={}, swept=())}
+        (said,) = replace(found, worst=nowhere).over_tolerances
+        assert said.endswith(
+            "that stands at some of the values looked at only; stable for all values elsewhere."
+        )
+        assert replace(found, worst=nowhere).verdict == "depends"
 
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))

@@ -12,6 +12,7 @@ from facegear.drives.intervals import united
 from facegear.drives.tolerances import Toleranced, TolerancedGearbox, Tolerances
 from facegear.drives.verdict import driven
 from facegear.drives.worst_case import worst_case, worst_case_in_torsion
+from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import tongues
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.support.parameters import rad_per_s
@@ -54,7 +55,7 @@ def test_springs_of_teeth_change_with_those_of_bearings():
 
 def test_without_tolerances_the_drive_is_as_it_is():
     found = worst_case(TREGOLD, RANGE, Tolerances())
-    assert list(found.corners) == [(1.0, 1.0)]
+    assert list(found.points) == [(1.0, 1.0)]
     own = tongues(TREGOLD, RANGE)
     expected = united([(tongue.lower, tongue.upper) for tongue in own])
     np.testing.assert_allclose(found.swept, expected, rtol=1e-9)
@@ -148,7 +149,7 @@ def test_shafts_drawn_at_random_are_unstable_only_where_borders_say():
     speeds = (float(rad_per_s(560.0)), float(rad_per_s(760.0)))
     found = worst_case_in_torsion(GEARBOX.torsional, speeds, tolerances)
     assert found.factors == ("mesh stiffness", "mesh damping", "shaft stiffness", "shaft damping")
-    assert len(found.corners) == 9
+    assert len(found.points) == 19
     own = sum(tongue.width for tongue in tongues(GEARBOX.torsional, speeds)) / (speeds[1] - speeds[0])
     assert found.share > 1.05 * own > 0.0
     drawn = np.random.default_rng(5).uniform([0.95, 0.9, 0.7], [1.05, 1.1, 1.3], (6, 3))
@@ -164,6 +165,36 @@ def test_shafts_drawn_at_random_are_unstable_only_where_borders_say():
             assert any(
                 low - 1e-9 <= tongue.lower and tongue.upper <= high + 1e-9 for low, high in found.swept
             )
+
+
+@pytest.mark.parametrize(("low_rpm", "high_rpm", "swept"), [(301.0, 302.5, True), (155.5, 157.0, False)])
+def test_a_tongue_that_crosses_a_narrow_range_between_the_values_looked_at_is_not_missed(
+    low_rpm, high_rpm, swept
+):
+    """Nothing is unstable there at 0.7, 0.85, 1, 1.15 and 1.3 times the stiffness of the shafts, and yet between."""
+    speeds = (float(rad_per_s(low_rpm)), float(rad_per_s(high_rpm)))
+    found = worst_case_in_torsion(GEARBOX.torsional, speeds, Tolerances(shaft_stiffness=0.3))
+
+    def at(factor):
+        return tongues(TolerancedGearbox(GEARBOX.torsional, shaft_stiffness_factor=factor), speeds)
+
+    assert not any(at(factor) for factor in (0.7, 0.85, 1.0, 1.15, 1.3))
+    between = [tongue for factor in np.linspace(0.7, 1.0, 16) for tongue in at(float(factor))]
+    assert between
+    assert not any(found.points.values())
+    assert not found.is_stable
+    assert bool(found.swept) == swept
+    for tongue in between:
+        assert any(low - 1e-9 <= tongue.lower and tongue.upper <= high + 1e-9 for low, high in found.possible)
+
+
+def test_of_a_tongue_that_reaches_into_the_range_the_growth_there_is_told():
+    speeds = (float(rad_per_s(670.0)), float(rad_per_s(700.0)))
+    found = worst_case_in_torsion(GEARBOX.torsional, speeds, Tolerances(shaft_stiffness=0.01))
+    (tongue,) = found.points[(1.0,) * 4]
+    assert tongue.lower == tongue.peak == pytest.approx(speeds[0], rel=1e-12)
+    assert tongue.growth_rate == pytest.approx(growth_rate(GEARBOX.torsional.system(speeds[0])), rel=1e-9)
+    assert found.fastest[1].growth_rate >= tongue.growth_rate
 
 
 def test_a_file_gives_tolerances_of_shafts_where_it_has_some():
