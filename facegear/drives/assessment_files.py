@@ -249,7 +249,11 @@ def _highest_peaks(data: xr.Dataset, digits: int) -> Iterator[tuple[str, ...]]:
 
 
 def _left_out(found: Assessment) -> Section:
-    return Section("Left out", (Listing((*found.left_out, found.not_varied)),))
+    return Section("Left out", (Listing((*_failures(found.failed), *found.left_out, found.not_varied)),))
+
+
+def _failures(failed: Sequence[str]) -> list[str]:
+    return [f"A model that could not be computed: {each}" for each in failed]
 
 
 def write_assessment(found: Assessment, folder: str | Path) -> Path:

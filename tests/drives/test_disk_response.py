@@ -45,7 +45,7 @@ def variants(file, contact=""):
     name = contact or next(iter(contacts))
     model = driven(file, "dead", with_own_teeth(file, contacts[name]))
     own = Variant(name, FORCES["dead"], own_teeth(file), with_basis(model, 0, 1))
-    found, _ = other_teeth(file, own, contacts[name])
+    found, *_ = other_teeth(file, own, contacts[name])
     return {each.teeth: each for each in (own, *found)}
 
 
