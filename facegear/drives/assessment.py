@@ -11,7 +11,7 @@ import xarray as xr
 from facegear.drives.assessment_table import model_table
 from facegear.drives.disk_response import DiskResponse
 from facegear.drives.disk_response_table import peaks_table, response_table
-from facegear.drives.disk_response_words import sentences
+from facegear.drives.disk_response_words import parting, sentences
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import corner, mechanism, told, within_tolerances
@@ -149,7 +149,7 @@ class Assessment:
             words = f"Unstable under all: {where} each is unstable at some speeds."
         else:
             words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
-        words += self._of_failed + self._of_torsion
+        words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
         values = ", tolerances included" if self.worst else ""
         words += f" Speeds at which every model is stable{values}: {told(self.always_stable)}."
         families = (
@@ -224,6 +224,11 @@ class Assessment:
     def forced(self) -> tuple[str, ...]:
         """Forced response of the disk in words: how far the force of a mesh departs from that at rest, or why not."""
         return sentences(self.disk_responses, self.static_force)
+
+    @property
+    def parting(self) -> str:
+        """That flanks would part, and at how many speeds, though models have them in contact; empty if none says so."""
+        return parting(self.disk_responses, self.static_force, self.response)
 
     @property
     def response_table(self) -> xr.Dataset | None:

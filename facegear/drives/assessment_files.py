@@ -48,7 +48,7 @@ def sections(found: Assessment) -> tuple[Section, ...]:
 
 
 def _verdict(found: Assessment) -> Section:
-    good = found.verdict == SAFE
+    good = found.verdict == SAFE and not found.parting
     parts: list[Paragraph | Listing] = [
         Paragraph(f"{found.file.name}.", strong=True),
         Paragraph(found.headline, "good" if good else "bad", strong=True),
