@@ -22,6 +22,7 @@ from facegear.drives.disk_response import RESPONSE_SPEEDS, disk_response
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION, best_change
 from facegear.drives.outcome import Outcome
+from facegear.drives.refusals import told
 from facegear.drives.report_arrays import describe
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import (
@@ -269,7 +270,7 @@ def _tried(model: FaceGears, speeds: tuple[float, float], tolerance: float, most
     try:
         return _Tried(settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps), "")
     except (ArithmeticError, ValueError) as error:
-        return _Tried(None, str(error))
+        return _Tried(None, told(error))
 
 
 def _settled(
@@ -302,7 +303,7 @@ def _at_worst(
     try:
         return find(model, speeds, tolerances)
     except (ArithmeticError, ValueError) as error:
-        return not_known(str(error), speeds, tolerances)
+        return not_known(told(error), speeds, tolerances)
 
 
 def _response(file: DriveFile, torsional: Any) -> tuple[xr.Dataset | None, str]:
@@ -315,7 +316,7 @@ def _response(file: DriveFile, torsional: Any) -> tuple[xr.Dataset | None, str]:
     try:
         return frequency_response(loaded, speeds, jobs=1, progress=False), ""
     except ArithmeticError as error:
-        return None, str(error)
+        return None, told(error)
 
 
 def _change(file: DriveFile, unstable: Outcome) -> str:

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from facegear.drives.command_line import parser
 from facegear.drives.commands import INTERRUPTED, MISUSED, REFUSED, UsageError, say
 from facegear.drives.drive_file import DriveFileError
+from facegear.drives.refusals import told
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -45,8 +46,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Whoever read the output, `head` for one, has enough; nothing more can be said there.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return REFUSED
-    except (DriveFileError, OSError, ArithmeticError) as problem:
+    except (DriveFileError, OSError) as problem:
         say(str(problem))
+        return REFUSED
+    except ArithmeticError as problem:
+        say(told(problem))
         return REFUSED
     except KeyboardInterrupt:
         say("Interrupted: nothing was left half-written.")

@@ -19,6 +19,7 @@ from facegear.drives.drive_schema import schema
 from facegear.drives.drive_text import drive_text, write_drive_file
 from facegear.drives.examples import about, example_names, example_text
 from facegear.drives.new_drive import all_keys, completed, missing, value_in
+from facegear.drives.refusals import told
 
 DONE, REFUSED, MISUSED, INTERRUPTED = 0, 1, 2, 130
 
@@ -125,7 +126,7 @@ def stability_map(options: argparse.Namespace) -> int:
             jobs=options.jobs,
         )
     except ValueError as problem:
-        raise UsageError(str(problem)) from problem
+        raise UsageError(told(problem)) from problem
     for path in outputs:
         WRITERS[path.suffix](found, path)
         tell(f"The map: {path}")

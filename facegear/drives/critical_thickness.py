@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from facegear.drives.refusals import told
 from facegear.maps.lobes import CriticalThickness, StableRangeError, UnstableTopError, highest_lobes
 from facegear.maps.parallel import in_processes
 from facegear.mechanics.pinions_on_disk import FaceGears
@@ -66,7 +67,7 @@ def thickness_verdict(
     except StableRangeError as error:
         return ThicknessVerdict(None, f"stable down to h/a = {error.thickness_ratio:.4g}")
     except ArithmeticError as error:
-        return ThicknessVerdict(None, f"the search lost its way: {error}")
+        return ThicknessVerdict(None, f"the search lost its way: {told(error)}")
     return ThicknessVerdict(critical, "")
 
 

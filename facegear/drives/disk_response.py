@@ -17,6 +17,7 @@ import xarray as xr
 
 from facegear.drives.basis import unstable_share, with_basis
 from facegear.drives.outcome import Outcome
+from facegear.drives.refusals import told
 from facegear.drives.variants import Variant
 from facegear.floquet.models import Coordinate, system_at
 from facegear.floquet.periodic import PeriodicSystem
@@ -215,7 +216,7 @@ def disk_response(outcome: Outcome, force: float, speeds: FloatArray) -> DiskRes
             before = largest_departure(normal_forces(fewer, error, speeds))[0]
         return DiskResponse(replace(variant, model=model), size, data, "", before)
     except (ArithmeticError, ValueError) as problem:
-        return DiskResponse(variant, 0.0, None, str(problem))
+        return DiskResponse(variant, 0.0, None, told(problem))
 
 
 def normal_forces(model: FaceGears, error: PiecewiseChebyshev, speeds: FloatArray) -> xr.Dataset:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from facegear.drives.refusals import told
 from facegear.geometry.solids import Mesh, ToothSurface
 from facegear.support.files import written_whole
 from facegear.support.tables import write_table
@@ -42,7 +43,7 @@ def write_parts(
         try:
             write(path)
         except (ArithmeticError, OSError, ValueError) as problem:
-            refused[name] = str(problem)
+            refused[name] = told(problem)
         else:
             written.append(path)
     return tuple(written), refused

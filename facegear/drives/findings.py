@@ -18,6 +18,7 @@ from facegear.drives import critical_thickness, report_arrays, report_rows, verd
 from facegear.drives.damage import signs_of_damage
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.play import motions_in_tongues
+from facegear.drives.refusals import told
 from facegear.drives.report_rows import Row
 from facegear.floquet.models import Model, value_of
 from facegear.maps.tracing import Tongue, tongues
@@ -102,7 +103,7 @@ class Findings:
         try:
             _ = self.torsional_tongues
         except (ArithmeticError, ValueError) as problem:
-            return str(problem)
+            return told(problem)
         return ""
 
     @cached_property

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+from facegear.drives.refusals import told
 from facegear.support.provenance import made_by
 
 if TYPE_CHECKING:
@@ -216,7 +217,7 @@ def attempted(title: str, make: Callable[[], Section]) -> Section:
     try:
         return make()
     except (ArithmeticError, ValueError, OSError) as problem:
-        words = f"This part could not be computed, the others could: {problem}"
+        words = f"This part could not be computed, the others could: {told(problem)}"
         return Section(title, (Paragraph(words, "bad"),))
 
 

@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from facegear.drives.refusals import told
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.orbits import Orbit, periodic_orbit
 from facegear.floquet.transients import settled
@@ -81,7 +82,7 @@ def _in_tongue(play: Backlash, tongue: Tongue) -> Motion:
     try:
         return motion_from_rest(play, tongue.peak, _periods(play, tongue))
     except ArithmeticError as error:
-        return Motion(math.nan, f"not followed: {error}", None, np.zeros((0, 0)))
+        return Motion(math.nan, f"not followed: {told(error)}", None, np.zeros((0, 0)))
 
 
 def _periods(play: Backlash, tongue: Tongue) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,11 +14,12 @@ from facegear.drives.contacts import NAMES, torsional_under
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.drive_keys import SECTIONS
 from facegear.drives.keys import OVER_SI, Key
+from facegear.drives.refusals import told
 from facegear.drives.verdict import driven
-from facegear.floquet.models import Model, value_of
+from facegear.floquet.models import Model, replace_parameter, system_at, value_of
 from facegear.mechanics.edge_stiffness import Following
 from facegear.support import labelled
-from facegear.support.parameters import finite, integer_at_least, rpm
+from facegear.support.parameters import finite, integer_at_least, rad_per_s, rpm
 from facegear.support.tables import write_table
 
 _GEARBOX, _TOLERANCES = "gearbox", "tolerances"
@@ -168,10 +169,10 @@ def sweep(
     own = chosen.from_si(value_of(model, chosen.si_name))
     low = max(_HALF * own, chosen.lowest) if lowest is None else finite("from", lowest)
     high = min((1.0 + _HALF) * own, chosen.highest) if highest is None else finite("to", highest)
-    if not chosen.lowest <= low < high <= chosen.highest:
+    lowest_valid = low >= chosen.lowest or (chosen.or_zero and low == 0.0)
+    if not (lowest_valid and low < high <= chosen.highest):
         raise ValueError(
-            f"from and to must ascend and be {chosen.valid_entry.removeprefix('0, or ')} for {key}, "
-            f"got {low:g} to {high:g}"
+            f"from and to must ascend and be {chosen.valid_entry} for {key}, got {low:g} to {high:g}"
         )
     slow, fast = speeds_rpm or tuple(float(rpm(speed)) for speed in file.requirements.speeds)
     if not 0.0 < finite("speeds", slow) < finite("speeds", fast):
@@ -180,10 +181,21 @@ def sweep(
     provenance = (
         f"{report_arrays.describe(file)}, contact = {contact or 'as in the file'}, following = {following}"
     )
+    _require_models(model, chosen, values, float(rad_per_s(fast)))
     chart = report_arrays.growth_map(
         model, chosen.si_name, values, np.linspace(slow, fast, cells), provenance, jobs=jobs
     )
     return Sweep(chosen, own, chart)
+
+
+def _require_models(model: Model, key: Key, values: Sequence[float], speed: float) -> None:
+    """Refuse first and last value where there is no such model, before anything is computed."""
+    for value in (values[0], values[-1]):
+        try:
+            system_at(replace_parameter(model, key.si_name, value), speed)
+        except ValueError as problem:
+            shown = f"{key.name} = {key.from_si(value):.6g} {key.unit}".rstrip()
+            raise ValueError(f"with {shown}: {told(problem)}") from problem
 
 
 def columns(found: Sweep) -> dict[str, list[float]]:

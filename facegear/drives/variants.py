@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from facegear.drives.contacts import NAMES, USUAL_CORRECTION, transverse_contacts
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID, COMPLIANCE, FlexibleTeeth
+from facegear.drives.refusals import told
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.mechanics.sharing import RULES
@@ -108,9 +109,9 @@ def other_teeth(file: DriveFile, own: Variant, plain: Contact) -> tuple[list[Var
         try:
             found.append(replace(own, teeth=name, model=build()))
         except (TypeError, ValueError) as error:
-            refused.append(f"{own.contact}, {name}: {error}")
+            refused.append(f"{own.contact}, {name}: {told(error)}")
         except ArithmeticError as error:
-            failed.append(f"{own.contact}, {own.force}, {name}: {error}")
+            failed.append(f"{own.contact}, {own.force}, {name}: {told(error)}")
     return found, refused, failed
 
 

@@ -162,6 +162,14 @@ def test_a_map_in_three_kinds_of_files(here, capsys):
     [
         ("--parameter no_such", "parameter must be one of module_mm"),
         ("--from 2 --to 1", "from and to must ascend"),
+        (
+            "--parameter bore_radius_mm --from 10 --to 500",
+            "with bore_radius_mm = 10 mm: body.bore_radius_mm must lie in [11.5",
+        ),
+        (
+            "--parameter module_mm --from 0.2 --to 9",
+            "with module_mm = 0.2 mm: body.bore_radius_mm must lie in [",
+        ),
         ("--output map.xls", "--output must end in .nc, .csv, .svg, .png, .pdf, got 'map.xls'"),
         ("--contact loaded", "contact must be tregold or geometric"),
     ],

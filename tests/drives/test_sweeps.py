@@ -60,13 +60,20 @@ def test_half_and_one_and_a_half_times_the_own_value_if_nothing_is_said():
     assert found.own == pytest.approx(0.03)
 
 
+def test_nothing_of_a_number_that_may_be_zero_is_swept_too():
+    found = sweep(CASE_1, "damping_us", lowest=0.0, highest=6.0, cells=2, speeds_rpm=(500.0, 600.0))
+    assert found.values.tolist() == pytest.approx([0.0, 6.0])
+    with pytest.raises(ValueError, match=r"be a number from .* for thickness_ratio, got 0 to"):
+        sweep(CASE_1, "thickness_ratio", lowest=0.0, highest=0.1)
+
+
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
         ({"key": "nosuch"}, r"parameter must be one of module_mm, .*stiffness.*, got 'nosuch'"),
         ({"key": "input_stiffness_Nm_per_rad"}, "parameter must be one of"),
         ({"lowest": 2.0, "highest": 1.0}, "from and to must ascend"),
-        ({"lowest": -1.0}, "from and to must ascend and be a number from 1e-06 to 1000 for stiffness"),
+        ({"lowest": -1.0}, "from and to must ascend and be 0, or a number from 1e-06 to 1000 for stiffness"),
         ({"speeds_rpm": (500.0, 400.0)}, "speeds must be greater than 0 and ascend, got 500 to 400"),
         ({"contact": "loaded"}, "contact must be tregold or geometric for these teeth, got 'loaded'"),
         ({"cells": 1}, "cells must be at least 2"),
