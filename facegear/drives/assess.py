@@ -128,6 +128,8 @@ class _Found:
         # Of each case and of the teeth besides the file's in it, by number of the case and of the teeth: 0 its own.
         self.outcomes: dict[tuple[int, int], Outcome] = {}
         self.refused: dict[tuple[int, int], list[str]] = {}
+        # Models that there are, but that could not be computed.
+        self.failed: dict[tuple[int, int], list[str]] = {}
         self.others: dict[tuple[int, int], Variant] = {}
         self.torsion = _in_torsion(file, self.contacts)
         self.found: dict[tuple[str, Any], Any] = {}
@@ -175,8 +177,9 @@ class _Found:
         # Where two bases agree for the file's teeth, the smaller is where the others begin.
         start = found.steps[-2:][0]
         own = replace(case, model=with_basis(case.model, start.nodal_circles, start.nodal_diameters))
-        variants, reasons = other_teeth(self.file, own, self.contacts[case.contact])
-        self.refused[number, 0] = reasons
+        variants, self.refused[number, 0], self.failed[number, 0] = other_teeth(
+            self.file, own, self.contacts[case.contact]
+        )
         bases = min(_MORE_BASES, self.most_steps)
         for place, variant in enumerate(variants, 1):
             self.others[number, place] = variant
@@ -196,11 +199,11 @@ class _Found:
     def _take_teeth(self, crew: Crew, which: tuple[int, int], tried: _Tried) -> None:
         variant = self.others[which]
         if tried.found is None:
-            self.refused[which] = [f"{variant.name}: {tried.reason}"]
+            self.failed[which] = [f"{variant.name}: {tried.reason}"]
         else:
             here = replace(variant, model=tried.found.model)
             self._keep(crew, which, Outcome(here, tried.found.tongues, tried.found.settled))
-        done = sum(place > 0 for _, place in {**self.outcomes, **self.refused})
+        done = sum(place > 0 for _, place in {**self.outcomes, **self.failed})
         self.say(f"other teeth {done} of {len(self.others)} known so far: {variant.name}")
 
     def _keep(self, crew: Crew, which: tuple[int, int], outcome: Outcome) -> None:
@@ -226,7 +229,10 @@ class _Found:
         others = sorted(self.others, key=lambda which: -len(self.others[which].model.coordinates))
         order = [which for which in (*own, *others) if which in self.outcomes]
         outcomes = tuple(self.outcomes[which] for which in order)
-        refused = [reason for which in (*own, *others) for reason in self.refused.get(which, ())]
+        refused, failed = (
+            [reason for which in (*own, *others) for reason in reasons.get(which, ())]
+            for reasons in (self.refused, self.failed)
+        )
         response, reason = self.found.get(("response", ""), (None, "the file has no section gearbox"))
         refused += [f"dynamic load of the teeth in torsion: {reason}"] * bool(reason)
         change = self.found.get(("change", ""))
@@ -245,6 +251,7 @@ class _Found:
             response=response,
             change=change,
             left_out=tuple(dict.fromkeys(refused)),
+            failed=tuple(failed),
             disk_responses=tuple(
                 self.found["disk", which] for which in order if ("disk", which) in self.found
             ),

@@ -11,7 +11,7 @@ import xarray as xr
 from facegear.drives.assessment_table import model_table
 from facegear.drives.disk_response import DiskResponse
 from facegear.drives.disk_response_table import peaks_table, response_table
-from facegear.drives.disk_response_words import sentences
+from facegear.drives.disk_response_words import parting, sentences
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import corner, mechanism, told, within_tolerances
@@ -51,9 +51,11 @@ class Assessment:
     change : str
         The change that helps the file's own model most, made in earnest; empty if there is none.
     left_out : tuple of str
-        What could not be computed, and why.
+        What there is not, or could not be computed beside the models, and why.
     disk_responses : tuple of DiskResponse
         Forced response of the disk in each model of the file's own contact, or why there is none.
+    failed : tuple of str
+        Models of the disk's motion that could not be computed, and why: what they come to is not known.
     """
 
     file: DriveFile
@@ -64,6 +66,7 @@ class Assessment:
     change: str
     left_out: tuple[str, ...]
     disk_responses: tuple[DiskResponse, ...] = ()
+    failed: tuple[str, ...] = ()
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -75,6 +78,8 @@ class Assessment:
         """One of "safe under all", "unstable under all", "depends": models, and values in their tolerances."""
         disk = [outcome.is_stable for outcome in self.outcomes]
         torsion = [not found for found in self.torsion.values()] or [True]
+        if self.failed:
+            return DEPENDS if any(torsion) else UNSTABLE
         if all(disk) and all(torsion) and all(case.is_stable for case in self.worst.values()):
             return SAFE
         # A drive is stable where the disk and the gearbox are.
@@ -99,6 +104,8 @@ class Assessment:
             found.append("where in their tolerances stiffness, damping and speed lie")
         if len({bool(tongues) for tongues in self.torsion.values()}) == 2:
             found.append("contact or arm of the mesh force in torsion")
+        if self.failed:
+            found.append("models that could not be computed")
         return tuple(found)
 
     def _is_own(self, outcome: Outcome) -> bool:
@@ -142,7 +149,7 @@ class Assessment:
             words = f"Unstable under all: {where} each is unstable at some speeds."
         else:
             words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
-        words += self._of_torsion
+        words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
         values = ", tolerances included" if self.worst else ""
         words += f" Speeds at which every model is stable{values}: {told(self.always_stable)}."
         families = (
@@ -155,6 +162,17 @@ class Assessment:
         if open_cases:
             words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn them."
         return words
+
+    @property
+    def _of_failed(self) -> str:
+        """How many models could not be computed, as the headline has it; empty if all could."""
+        count = len(self.failed)
+        if not count:
+            return ""
+        return (
+            f" {count} more could not be computed, and what {'it comes' if count == 1 else 'they come'} to is not "
+            "known (Left out): what is said of every model is said of the others."
+        )
 
     @property
     def _of_torsion(self) -> str:
@@ -206,6 +224,11 @@ class Assessment:
     def forced(self) -> tuple[str, ...]:
         """Forced response of the disk in words: how far the force of a mesh departs from that at rest, or why not."""
         return sentences(self.disk_responses, self.static_force)
+
+    @property
+    def parting(self) -> str:
+        """That flanks would part, and at how many speeds, though models have them in contact; empty if none says so."""
+        return parting(self.disk_responses, self.static_force, self.response)
 
     @property
     def response_table(self) -> xr.Dataset | None:

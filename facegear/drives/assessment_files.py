@@ -36,6 +36,11 @@ _BASIS = "nodal circles, diameters"
 PAGE = "assessment.html"
 """Name of the page among the files of an assessment."""
 
+_ARRAYS = ("models", "torsion_response", "torsion_response_peaks", "disk_response", "disk_response_peaks")
+_TABLES = ("models", "tolerances", "disk_response", "disk_response_peaks")
+FILES = (PAGE, *(f"{name}.nc" for name in _ARRAYS), *(f"{name}.csv" for name in _TABLES))
+"""Names of all files that an assessment may have."""
+
 
 def sections(found: Assessment) -> tuple[Section, ...]:
     """Sections of the page: verdict, models, tolerances, dynamic load, what was left out."""
@@ -43,7 +48,7 @@ def sections(found: Assessment) -> tuple[Section, ...]:
 
 
 def _verdict(found: Assessment) -> Section:
-    good = found.verdict == SAFE
+    good = found.verdict == SAFE and not found.parting
     parts: list[Paragraph | Listing] = [
         Paragraph(f"{found.file.name}.", strong=True),
         Paragraph(found.headline, "good" if good else "bad", strong=True),
@@ -244,7 +249,11 @@ def _highest_peaks(data: xr.Dataset, digits: int) -> Iterator[tuple[str, ...]]:
 
 
 def _left_out(found: Assessment) -> Section:
-    return Section("Left out", (Listing((*found.left_out, found.not_varied)),))
+    return Section("Left out", (Listing((*_failures(found.failed), *found.left_out, found.not_varied)),))
+
+
+def _failures(failed: Sequence[str]) -> list[str]:
+    return [f"A model that could not be computed: {each}" for each in failed]
 
 
 def write_assessment(found: Assessment, folder: str | Path) -> Path:
@@ -254,7 +263,7 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
     ----------
     found : Assessment
     folder : str or Path
-        If it is there already, files of the same name are replaced, and others stay.
+        If it is there already, files of an earlier assessment are replaced or removed, and others stay.
 
     Returns
     -------
@@ -267,7 +276,7 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
         If the folder cannot be written to.
     """
     table = found.table()
-    with folder_written_whole(Path(folder)) as place:
+    with folder_written_whole(Path(folder), FILES) as place:
         write_table(model_columns(table), place / "models.csv")
         labelled.save(table, place / "models.nc")
         if found.response is not None:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import xarray as xr
 
 from facegear.drives.disk_response import MOST_MOVED, DiskResponse, largest_departure
-from facegear.drives.torsion_response import AT_BORDERS
+from facegear.drives.torsion_response import AT_BORDERS, parted
 from facegear.support.parameters import rpm
 
 # Significant digits of a force that two bases agree on, and of one that they do not.
@@ -79,15 +79,50 @@ def _basis(found: DiskResponse, digits: int) -> str:
 
 def _parted(data: xr.Dataset, static: float) -> str:
     """Say at how many speeds, and at how many peaks between them, flanks would part."""
-    known = data.dropna("speed", subset=["force_highest"])
-    parted = int((known["force_lowest"].min("load").values < -static).sum())
-    words = f"Of {data.sizes['speed']} speeds it is stable at {known.sizes['speed']}, and flanks would part at {parted}"
-    rises = known.sizes["speed"] < data.sizes["speed"] or data.attrs["at_borders"]
+    speeds, count, beyond = parted(data, static)
+    words = f"Of {data.sizes['speed']} speeds it is stable at {count}, and flanks would part at {speeds}"
+    rises = count < data.sizes["speed"] or data.attrs["at_borders"]
     last = AT_BORDERS if rises else ""
     if not (peaks := data.sizes["peak"]):
         return f"{words}.{last}"
-    beyond = int((data["peak_force_lowest"].values < -static).sum())
     return f"{words}; of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them, at {beyond}.{last}"
+
+
+def parting(found: Sequence[DiskResponse], static: float, in_torsion: xr.Dataset | None) -> str:
+    """Say that flanks would part where the responses say so, of the disk in the model where it is worst.
+
+    Parameters
+    ----------
+    found : sequence of DiskResponse
+    static : float
+        Force of a mesh at rest [N].
+    in_torsion : xarray.Dataset or None
+        Response of the gearbox, whose forces have the static one in them.
+
+    Returns
+    -------
+    str
+        A sentence; empty where none says so.
+    """
+    disk = [(*parted(each.data, static), each.variant.name) for each in found if each.data is not None]
+    places = []
+    if disk:
+        *counts, name = max(disk, key=lambda each: (each[0], each[2]))
+        places.append((f"in the disk's motion ({name})", *counts))
+    if in_torsion is not None:
+        places.append(("in torsion", *parted(in_torsion)))
+    told = [
+        f"{where} at {speeds} of {count} speeds"
+        + f" and {peaks} of the resonances between them" * bool(peaks)
+        for where, speeds, count, peaks in places
+        if speeds or peaks
+    ]
+    if not told:
+        return ""
+    return (
+        "It takes flanks to stay in contact, but under the load of the drive they WOULD PART: "
+        f"{', and '.join(told)}; what becomes of the motion then it does not say."
+    )
 
 
 def rounded(number: float, digits: int) -> str:

@@ -13,6 +13,7 @@ from functools import partial
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.orbits import Orbit, periodic_orbit
@@ -51,10 +52,10 @@ def motions_in_tongues(play: Backlash, found: Sequence[Tongue], parameters: str)
     Returns
     -------
     xarray.Dataset
-        Over ``tongue``: ``peak`` [rpm]; ``compression`` [µm], the largest of the teeth along the line of action,
-        infinite where the motion grows beyond a thousand times ``at_rest``, that of the resting gearbox. Labels in
-        ``label``, and in ``motion`` what it is: "repeats every 2 periods, flanks part" or the like, or why it was not
-        followed, with NaN for its compression.
+        Over ``tongue``: ``peak`` [rpm]; ``compression`` [µm], the largest of a tooth pair along the line of action,
+        infinite where the motion grows beyond a thousand times ``static``, that of one pair under the whole static
+        force. Labels in ``label``, and in ``motion`` what it is: "repeats every 2 periods, flanks part" or the like,
+        or why it was not followed, with NaN for its compression.
     """
     rows = [_in_tongue(play, tongue) for tongue in found]
     size = partial(variable, units="µm", rtol=0.1, atol=0.1)
@@ -62,9 +63,9 @@ def motions_in_tongues(play: Backlash, found: Sequence[Tongue], parameters: str)
         {
             "peak": variable("tongue", [rpm(tongue.peak) for tongue in found], "Speed", "rpm", atol=0.1),
             "compression": size(
-                "tongue", [1e6 * row.compression for row in rows], "Largest compression of the teeth"
+                "tongue", [1e6 * row.compression for row in rows], "Largest compression of a tooth pair"
             ),
-            "at_rest": size((), 1e6 * _compression(play, _at_rest(play)), "Compression at rest"),
+            "static": size((), 1e6 * _static(play), "Compression of one pair under the whole static force"),
         },
         coords={
             "tongue": np.arange(len(rows)),
@@ -99,9 +100,25 @@ def _at_rest(play: Backlash) -> FloatArray:
     return np.asarray(twisted - [0.0, turned, turned], dtype=float)
 
 
-def _compression(play: Backlash, displacements: FloatArray) -> FloatArray:
-    """How far the teeth of either flank are pressed in, negative in the gap [m]."""
-    return np.asarray(np.abs(play.torsional.deformation(displacements)) - play.gap / 2.0)
+def _static(play: Backlash) -> float:
+    """Compression of one pair that bears the whole static force T_o / (r_b1 N2/N1) [m]."""
+    drive, mesh = play.torsional.drive, play.torsional.gearbox.in_si.mesh_stiffness
+    return float(play.torque / (drive.base_radius * drive.gear_ratio * mesh))
+
+
+def _compression(system: ClearanceSystem, fraction: ArrayLike, displacements: FloatArray) -> FloatArray:
+    """How far each pair of either flank is pressed in, by its own shape φ at fractions of a period, (..., p) [m].
+
+    Negative in the gap; without a gap flanks are one, which pull as well; out of mesh as far as the gap is.
+    """
+    x = np.mod(fraction, 1.0)
+    found = []
+    for load, side, clearance in zip(system.system.loads, system.sides, system.clearances, strict=True):
+        phi, error = load.shape(x), load.transmission_error
+        u = (phi * displacements).sum(axis=-1) - (0.0 if error is None else error(x)[..., 0])
+        there = np.abs(phi).max(axis=-1) > 0.0
+        found.append(np.where(there, side * u if side else np.abs(u), 0.0) - clearance)
+    return np.stack(found, axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +128,8 @@ class Motion:
     Attributes
     ----------
     compression : float
-        Largest of the teeth of either flank [m], as periods begin where the motion is `irregular`, infinite where it
-        grows beyond a thousand times that at rest.
+        Largest of a tooth pair of either flank, by the arm of the model's mesh force [m], as periods begin where the
+        motion is `irregular`, infinite where it grows beyond a thousand times that under the whole static force.
     words : str
         What it is: "repeats every 2 periods, flanks part" or the like.
     orbit : Orbit or None
@@ -163,20 +180,24 @@ def motion_from_rest(play: Backlash, speed: float, periods: int = _FEWEST) -> Mo
     if integer_at_least("periods", periods, _STEP) % _STEP:
         raise ValueError(f"periods must be a multiple of {_STEP}, got {periods}")
     state, orbit = np.concatenate([rest, np.zeros_like(rest)]), None
-    limit = _LARGE * float(_compression(play, rest))
+    limit = _LARGE * _static(play)
     for _ in range(periods // _STEP):
         with np.errstate(over="ignore", invalid="ignore"):
             ends = settled(system, state[np.newaxis], _STEP, kept=_KEPT)[:, 0]
-        state, seen = ends[-1], _compression(play, ends[:, : rest.size])
+        state, seen = ends[-1], _compression(system, 0.0, ends[:, : rest.size])
         if not np.isfinite(ends).all() or seen.max() > limit:
-            return Motion(math.inf, "grows beyond a thousand times the compression at rest", None, ends)
+            return Motion(math.inf, "grows beyond a thousand times the static compression", None, ends)
         # A motion that is near a stable one which repeats itself ends there; near an unstable one it goes on.
         if (orbit := _repeating(system, ends)) is not None:
             break
     if orbit is None:
         words = f"irregular, or not settled, after {periods} periods: seen as periods begin"
         return Motion(float(seen.max()), words, None, ends)
-    largest = float(orbit.response.extremes(lambda x: _compression(play, orbit.displacements(x)))[1])
+
+    def along(x: FloatArray) -> FloatArray:
+        return _compression(system, x * orbit.periods, orbit.displacements(x))
+
+    largest = float(orbit.response.extremes(along)[1].max())
     count = "each period" if orbit.periods == 1 else f"every {orbit.periods} periods"
     return Motion(largest, f"repeats {count}, {_FLANKS[_contact(play, orbit)]}", orbit, ends)
 

@@ -10,9 +10,11 @@ from typing import Any
 import xarray as xr
 
 from facegear.drives import export, report_columns, report_rows
+from facegear.drives.contacts import NAMES
 from facegear.drives.findings import TORSION, Findings
 from facegear.drives.page import Listing, Paragraph, Section, attempted, page
 from facegear.drives.sections import SECTIONS
+from facegear.drives.verdict import FORCES
 from facegear.geometry import solids
 from facegear.support import labelled
 from facegear.support.files import file_stem, folder_written_whole
@@ -22,6 +24,17 @@ PAGE = "report.html"
 """Name of the page among the files of a report."""
 
 _FILES = "Files"
+_TABLES = ("summary", "natural_frequencies", "tongues", "safe_windows", "bases", "changes", "tooth_points_mm")
+_ARRAYS = ("bases", "modes", "combinations", "map_follower", "map_dead", "torsional_map", "play", "damage")
+_MODELS = (TORSION, *(f"{contact}, {force}" for contact in NAMES.values() for force in FORCES.values()))
+FILES = (
+    PAGE,
+    "tooth_mm.stl",
+    *(f"{name}.csv" for name in _TABLES),
+    *(f"{name}.nc" for name in _ARRAYS),
+    *(f"tongues_{file_stem(name)}.nc" for name in _MODELS),
+)
+"""Names of all files that a report may have."""
 
 
 def results_directory(drive_file: str | Path, kind: str = "results") -> Path:
@@ -146,7 +159,7 @@ def write_report(found: Findings, folder: str | Path, say: Callable[[str], objec
     ----------
     found : Findings
     folder : str or Path
-        Where it goes. If it is there already, files of the same name are replaced, and others stay.
+        Where it goes. If it is there already, files of an earlier report are replaced or removed, and others stay.
     say : callable
         Called with a line of progress as each section begins.
 
@@ -162,7 +175,7 @@ def write_report(found: Findings, folder: str | Path, say: Callable[[str], objec
     """
     count = len(SECTIONS) + 1
     made = []
-    with folder_written_whole(Path(folder)) as place:
+    with folder_written_whole(Path(folder), FILES) as place:
         for number, (title, make) in enumerate(SECTIONS, start=1):
             say(f"section {number} of {count}: {title}")
             made.append(attempted(title, partial(make, found)))

@@ -240,7 +240,7 @@ def _motions(found: Findings) -> list[Part]:
     """Say what becomes of tongues where teeth have play."""
     moved = found.play
     assert moved is not None
-    over = moved["compression"].values / float(moved["at_rest"])
+    over = moved["compression"].values / float(moved["static"])
     rows = tuple(
         (str(label), f"{speed:.1f}", "" if np.isinf(times) else f"{times:.2g}", str(motion))
         for label, speed, times, motion in zip(
@@ -250,9 +250,10 @@ def _motions(found: Findings) -> list[Part]:
     words = Paragraph(
         "The teeth have play (gearbox.backlash_um). What becomes of each tongue: the motion from near rest, "
         "under the torque of one pinion's power, at the speed where the gearbox without play grows fastest. "
-        "Larger disturbances may end elsewhere."
+        "Larger disturbances may end elsewhere. The compression is the largest of a tooth pair, over that of one pair "
+        "under the whole static force: so many times that force does its spring bear."
     )
-    headings = ("tongue", "speed [rpm]", "compression of the teeth over that at rest", "motion")
+    headings = ("tongue", "speed [rpm]", "largest compression over the static one", "motion")
     return [words, Table(headings, rows, "Motions of a gearbox whose teeth have play")]
 
 

@@ -35,6 +35,23 @@ def largest_load(response: xr.Dataset) -> tuple[float, float]:
     return float(forces[at]), float(np.append(known["speed"], response["peak_speed"])[at])
 
 
+def parted(response: xr.Dataset, static: float = 0.0) -> tuple[int, int, int]:
+    """Count speeds at which flanks would part, those with a steady response, and peaks between them where they part.
+
+    Parameters
+    ----------
+    response : xarray.Dataset
+        As :func:`largest_load`; it may have a response nowhere.
+    static : float
+        Force that presses the flanks and is none of the response [N].
+    """
+    known = response.dropna("speed", subset=["force_highest"])
+    count = known.sizes["speed"]
+    speeds = int((known["force_lowest"].min("load") < -static).sum()) if count else 0
+    peaks = response.get("peak_force_lowest")
+    return speeds, count, 0 if peaks is None else int((peaks < -static).sum())
+
+
 def in_words(response: xr.Dataset, static: float) -> str:
     """Say how large the force of a tooth pair becomes over speed, and where flanks would part.
 
@@ -54,8 +71,7 @@ def in_words(response: xr.Dataset, static: float) -> str:
     if not count:
         return "In torsion it is unstable at all speeds looked at: there is no steady load of the teeth."
     peaks, (largest, speed) = response.sizes["peak"], largest_load(response)
-    parted = int((known["force_lowest"].min("load") < 0.0).sum())
-    beyond = int((response["peak_force_lowest"] < 0.0).sum())
+    open_speeds, _, beyond = parted(response)
     rises = count < response.sizes["speed"] or response.attrs["at_borders"]
     between = (
         f", and of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them at {beyond}"
@@ -65,7 +81,7 @@ def in_words(response: xr.Dataset, static: float) -> str:
     return (
         f"In torsion, at {count} of {response.sizes['speed']} speeds where it is stable, and as long as flanks do not "
         f"part, a tooth pair bears up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / static:.3g} times the "
-        f"whole static force of {static:.4g} N. At {parted} of these {count} speeds flanks would part{between}."
+        f"whole static force of {static:.4g} N. At {open_speeds} of these {count} speeds flanks would part{between}."
         f"{AT_BORDERS if rises else ''}"
     )
 

@@ -82,7 +82,7 @@ def with_own_teeth(file: DriveFile, plain: Contact) -> Contact:
     return plain if file.teeth is None else file.teeth.contact(plain, file.drive)
 
 
-def other_teeth(file: DriveFile, own: Variant, plain: Contact) -> tuple[list[Variant], list[str]]:
+def other_teeth(file: DriveFile, own: Variant, plain: Contact) -> tuple[list[Variant], list[str], list[str]]:
     """Give a drive, under one contact and one force, every other kind of teeth.
 
     Parameters
@@ -98,16 +98,20 @@ def other_teeth(file: DriveFile, own: Variant, plain: Contact) -> tuple[list[Var
     variants : list of Variant
     refused : list of str
         Which there are not, and why, a sentence each.
+    failed : list of str
+        Which there are but could not be made, and why, a sentence each.
     """
-    found, refused = [], []
+    found, refused, failed = [], [], []
     for name, build in _kinds(file, own.model, plain).items():
         if name == own.teeth:
             continue
         try:
             found.append(replace(own, teeth=name, model=build()))
-        except (TypeError, ValueError, ArithmeticError) as error:
+        except (TypeError, ValueError) as error:
             refused.append(f"{own.contact}, {name}: {error}")
-    return found, refused
+        except ArithmeticError as error:
+            failed.append(f"{own.contact}, {own.force}, {name}: {error}")
+    return found, refused, failed
 
 
 def _kinds(file: DriveFile, own: FaceGears, plain: Contact) -> dict[str, Callable[[], FaceGears]]:

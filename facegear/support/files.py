@@ -13,7 +13,7 @@ import re
 import shutil
 import tempfile
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -120,20 +120,23 @@ def written_whole(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def folder_written_whole(path: Path) -> Iterator[Path]:
+def folder_written_whole(path: Path, own: Collection[str] = ()) -> Iterator[Path]:
     """Give a folder beside another to write to, whose files appear in it when all are written.
 
     Parameters
     ----------
     path : Path
         The folder; it and those above it are made.
+    own : collection of str, optional
+        Names of all files that may be written: those of an earlier time that are not written now are removed, or they
+        would lie there as results of this one.
 
     Yields
     ------
     Path
         Another folder beside it, empty. It becomes `path`; where that is there already, files of the same name are
-        replaced one by one, each whole, and others stay. If the block raises, nothing of it is left, and `path` is as
-        it was.
+        replaced one by one, each whole, and others stay but for those of `own`. If the block raises, nothing of it is
+        left, and `path` is as it was.
     """
     with _about(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -143,6 +146,10 @@ def folder_written_whole(path: Path) -> Iterator[Path]:
         yield temporary
         temporary.chmod(0o755)  # mkdtemp makes it private
         if path.is_dir():
+            written = {file.name for file in temporary.iterdir()}
+            for name in sorted(set(own) - written):
+                if not (earlier := path / name).is_dir():
+                    earlier.unlink(missing_ok=True)
             for file in sorted(temporary.iterdir()):
                 file.replace(path / file.name)
         else:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from facegear.drives.assess import _in_torsion, assess
+from facegear.drives.assess import _Found, _in_torsion, _Tried, assess
 from facegear.drives.assessment import Assessment
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.basis import with_basis
@@ -178,6 +178,22 @@ class TestVerdict:
         )
         assert replace(found, worst=nowhere).verdict == "depends"
 
+    def test_a_model_that_could_not_be_computed_is_counted_and_no_verdict_is_under_all(self, tmp_path):
+        stable, unstable = outcome("Tregold", DEAD, RIGID), outcome("Tregold", DEAD, RIGID, tongue(200, 300))
+        failed = ("Tregold; force; flexible teeth: it does not converge",)
+        for one, count in ((stable, "1 is"), (unstable, "0 are")):
+            found = replace(assessment(one), failed=failed)
+            assert (found.verdict, found.decides) == ("depends", ("models that could not be computed",))
+            assert found.headline.startswith(
+                "Depends on models that could not be computed: from 100 to 1000 rpm, of 1 models of the disk's motion "
+                f"{count} stable at all speeds. 1 more could not be computed, and what it comes to is not known"
+            )
+        text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
+        assert f"A model that could not be computed: {failed[0]}" in text
+        # A gearbox that is unstable whatever its model is makes the drive so.
+        found = replace(found, torsion={"Tregold, arm as printed": (tongue(600, 620),)})
+        assert found.verdict == "unstable under all"
+
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
         assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn them.")
@@ -275,6 +291,19 @@ def test_the_page_shows_hostile_names_as_text(tmp_path):
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [PAGE, "models.csv", "models.nc"]
 
 
+def test_files_of_an_earlier_assessment_do_not_lie_beside_a_new_page(tmp_path):
+    earlier = ["disk_response_peaks.nc", "disk_response_peaks.csv", "torsion_response.nc", "tolerances.csv"]
+    for name in (*earlier, "my_notes.csv"):
+        (tmp_path / name).write_text("of another drive")
+    write_assessment(assessment(outcome("Tregold", DEAD, RIGID)), tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        PAGE,
+        "models.csv",
+        "models.nc",
+        "my_notes.csv",
+    ]
+
+
 def test_largest_load_of_a_gearbox_is_that_of_its_steady_response_at_speeds_and_at_peaks_between():
     file = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
     torque = file.requirements.power / file.requirements.pinion_speed * file.drive.gear_ratio
@@ -309,6 +338,20 @@ def test_largest_load_of_a_gearbox_is_that_of_its_steady_response_at_speeds_and_
     # The static force is that of the torque at the base circle.
     assert found.static_force == pytest.approx(
         torque / (file.drive.base_radius * file.drive.gear_ratio), rel=1e-12
+    )
+
+
+def test_a_model_whose_computation_fails_is_among_those_that_failed():
+    work = _Found(CASE_1, 0.02, 1, lambda words: None)
+    variant = Variant("Tregold", DEAD, RIGID_TOTAL, CASE_1.transverse)
+    work.others[0, 1] = variant
+    work.take(None, ("teeth", (0, 1)), _Tried(None, "it does not converge"))
+    work.outcomes[0, 0] = outcome("Tregold", DEAD, RIGID)
+    found = work.assessment()
+    assert found.failed == (f"{variant.name}: it does not converge",)
+    assert (found.verdict, found.left_out) == (
+        "depends",
+        ("dynamic load of the teeth in torsion: the file has no section gearbox",),
     )
 
 

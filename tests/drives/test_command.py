@@ -2,6 +2,7 @@
 
 import argparse
 import errno
+import io
 import os
 import re
 import shutil
@@ -12,6 +13,7 @@ import time
 import warnings
 
 import nbformat
+import numpy as np
 import psutil
 import pytest
 import yaml
@@ -53,6 +55,32 @@ def test_an_interruption_while_the_command_is_loaded(monkeypatch):
     monkeypatch.delitem(sys.modules, "facegear.drives.command")
     monkeypatch.setattr(sys, "meta_path", [Interrupts, *sys.meta_path])
     assert facegear.__main__.main() == 130
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
+def test_what_is_redirected_is_in_utf_8_whatever_the_system_writes(tmp_path, encoding):
+    environment = ENVIRONMENT | {"PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
+
+    def run(*arguments):
+        return subprocess.run([*COMMAND, *arguments], capture_output=True, check=True, env=environment).stdout
+
+    assert "α" in run("new", "--help").decode("utf-8")
+    (tmp_path / "mine.yaml").write_bytes(run("examples", "shaft_angle_85"))
+    assert read_drive_file(tmp_path / "mine.yaml").drive.shaft_angle == pytest.approx(np.deg2rad(85.0))
+
+
+def test_a_terminal_that_lacks_a_letter_shows_another(monkeypatch):
+    class Terminal(io.TextIOWrapper):
+        def isatty(self):
+            return True
+
+    written = io.BytesIO()
+    terminal = Terminal(written, encoding="ascii", write_through=True)
+    monkeypatch.setattr(sys, "stdout", terminal)
+    monkeypatch.setattr(sys, "stderr", None)
+    monkeypatch.setattr(sys, "argv", ["facegear", "examples", "shaft_angle_85"])
+    assert facegear.__main__.main() == 0
+    assert (terminal.encoding, b"85?" in written.getvalue()) == ("ascii", True)
 
 
 def test_a_replaced_worker_is_not_worth_a_word(monkeypatch, recwarn):

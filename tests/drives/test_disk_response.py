@@ -10,6 +10,8 @@ import xarray as xr
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
+from facegear.drives.assessment import Assessment
+from facegear.drives.assessment_files import write_assessment
 from facegear.drives.basis import with_basis
 from facegear.drives.disk_response import (
     EVEN,
@@ -22,7 +24,7 @@ from facegear.drives.disk_response import (
     transmission_error,
 )
 from facegear.drives.disk_response_table import peaks_table, response_table
-from facegear.drives.disk_response_words import sentences
+from facegear.drives.disk_response_words import parting, sentences
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.outcome import Outcome
 from facegear.drives.variants import Variant, other_teeth, own_teeth, plain_contacts, with_own_teeth
@@ -45,7 +47,7 @@ def variants(file, contact=""):
     name = contact or next(iter(contacts))
     model = driven(file, "dead", with_own_teeth(file, contacts[name]))
     own = Variant(name, FORCES["dead"], own_teeth(file), with_basis(model, 0, 1))
-    found, _ = other_teeth(file, own, contacts[name])
+    found, *_ = other_teeth(file, own, contacts[name])
     return {each.teeth: each for each in (own, *found)}
 
 
@@ -278,6 +280,35 @@ def test_flanks_that_part_at_a_resonance_between_the_speeds_are_told():
     )
     quiet = sentences((forced(1234.0, peak=-99.0),), 100.0)[0]
     assert quiet.endswith("at 0; of 2 peaks of resonances between them, at 0.")
+
+
+def test_where_flanks_would_part_is_said_right_behind_the_verdict(tmp_path):
+    """As of the model that is worst of those of the disk, and of torsion, where the static force is in the response."""
+    static = 100.0
+    worst, better = forced(1.0, parted=-101.0), forced(1.0, parted=-50.0)
+    assert parting((better, worst), static, None).endswith(
+        f"in the disk's motion ({worst.variant.name}) at 2 of 2 speeds and 1 of the resonances between them; what "
+        "becomes of the motion then it does not say."
+    )
+    box = forced(1.0, parted=-1.0, peak=-5.0).data
+    assert "PART: in torsion at 2 of 2 speeds and 2 of the resonances" in parting((), static, box)
+    assert "resonances" not in parting((forced(1.0, parted=-101.0, peak=-1.0),), static, None)
+    assert parting((forced(1.0, peak=-99.0),), static, None) == parting((), static, None) == ""
+    stable = Outcome(worst.variant, (), True)
+    held, shaken = (
+        Assessment(CASE_1, (stable,), {}, {}, None, "", (), (forced(1.0, part, peak),))
+        for part, peak in ((-50.0, -99.0), (-1e5, -1e5))
+    )
+    assert held.verdict == shaken.verdict == "safe under all"
+    assert "PART" not in held.headline
+    assert shaken.headline.startswith(
+        "Safe under all: from 100 to 1000 rpm, of 1 models of the disk's motion none is unstable at any speed. "
+        "It takes flanks to stay in contact, but under the load of the drive they WOULD PART: in the disk's motion"
+    )
+    green = "#2e7d32"
+    for name, found, shown in (("held", held, True), ("shaken", shaken, False)):
+        page = write_assessment(found, tmp_path / name).read_text(encoding="utf-8")
+        assert (green in page[: page.index("Speeds at which every model is stable")]) is shown
 
 
 def test_peaks_are_kept_with_their_ends_and_the_model_they_are_of():

@@ -51,13 +51,31 @@ def test_one_part_that_fails_leaves_the_others(results):
     assert "critical thickness" not in table
 
 
+def test_all_names_of_files_are_known(results):
+    page, _ = results
+    assert {path.name for path in page.parent.iterdir()} <= set(report_files.FILES)
+    for name in (
+        "play",
+        "damage",
+        "torsional_map",
+        "tongues_torsion",
+        "tongues_true_sweep_force_follows_the_rim",
+    ):
+        assert f"{name}.nc" in report_files.FILES
+
+
 def test_without_cases_tables_and_meshes_are_still_written(file, tmp_path, monkeypatch):
     def fails(*_, **__):
         raise ArithmeticError("no tongue was found")
 
     monkeypatch.setattr(verdict, "cases", fails)
     found = Findings(file, cells=3, most_steps=1, jobs=1)
+    (tmp_path / "results").mkdir()
+    for name in ("tongues_torsion.nc", "play.nc", "tongues_mine.nc"):
+        (tmp_path / "results" / name).write_text("of another drive")
     page = report_files.write_report(found, tmp_path / "results")
+    assert not any((page.parent / name).exists() for name in ("tongues_torsion.nc", "play.nc"))
+    assert (page.parent / "tongues_mine.nc").exists()
     written = {path.name for path in page.parent.iterdir()}
     assert {"summary.csv", "natural_frequencies.csv", "modes.nc", "tooth_mm.stl", "report.html"} <= written
     assert not {"tongues.csv", "map_dead.nc"} & written

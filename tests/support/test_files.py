@@ -118,6 +118,26 @@ def test_a_folder_that_is_there_keeps_what_is_not_replaced(tmp_path):
     }
 
 
+def test_what_an_earlier_time_wrote_is_removed_and_what_others_wrote_is_not(tmp_path):
+    for name in ("mine.txt", "one.txt", "earlier.txt"):
+        (tmp_path / name).write_text("0")
+    (tmp_path / "folder.txt").mkdir()
+    own = ("one.txt", "earlier.txt", "never.txt", "folder.txt")
+
+    def write(stop=False):
+        with folder_written_whole(tmp_path, own) as place:
+            (place / "one.txt").write_text("1")
+            if stop:
+                raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write(stop=True)
+    assert (tmp_path / "earlier.txt").read_text() == (tmp_path / "one.txt").read_text() == "0"
+    write()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder.txt", "mine.txt", "one.txt"]
+    assert (tmp_path / "one.txt").read_text() == "1"
+
+
 KILLED = """
 import os, signal, sys
 from pathlib import Path
