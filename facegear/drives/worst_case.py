@@ -28,6 +28,8 @@ from facegear.mechanics.pinions_on_disk import FaceGears
 _ALONG = 5
 # Part by which the search goes beyond the speeds from which tongues can come, for what of a frequency no spring makes.
 _MARGIN = 1.02
+# Growth in a period from which a speed counts as unstable where that of other searches cannot be told.
+_COARSE = 1e-7
 
 Factors = tuple[float, ...]
 
@@ -167,7 +169,7 @@ def _in_box(model: Any, parts: Mapping[str, float], wide: tuple[float, float]) -
     step = max(math.sqrt(1.0 / (1.0 - part)) for part in springs.values())
     around = wide if reach == 1.0 else (wide[0] / (_MARGIN * reach), wide[1] * _MARGIN * reach)
     points = dict.fromkeys([(1.0,) * len(parts), *product(*levels)])
-    found = {point: tongues(at(point), around, progress=False) for point in points}
+    found = {point: _tongues(at(point), around) for point in points}
 
     swept: list[tuple[float, float]] = []
     possible: list[tuple[float, float]] = []
@@ -197,6 +199,14 @@ def _in_box(model: Any, parts: Mapping[str, float], wide: tuple[float, float]) -
         tuple(opens),
         tuple(parts),
     )
+
+
+def _tongues(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
+    """Tongues of one value; one of many may have two multipliers so close together that they are known less well."""
+    try:
+        return tongues(model, speeds, progress=False)
+    except ArithmeticError:
+        return tongues(model, speeds, threshold=_COARSE, progress=False)
 
 
 def _within(model: Model, found: Sequence[Tongue], wide: tuple[float, float]) -> tuple[Tongue, ...]:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from facegear.drives import worst_case as module
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
 from facegear.drives.intervals import united
 from facegear.drives.tolerances import Toleranced, TolerancedGearbox, Tolerances
@@ -186,6 +187,24 @@ def test_a_tongue_that_crosses_a_narrow_range_between_the_values_looked_at_is_no
     assert bool(found.swept) == swept
     for tongue in between:
         assert any(low - 1e-9 <= tongue.lower and tongue.upper <= high + 1e-9 for low, high in found.possible)
+
+
+def test_a_value_at_which_multipliers_are_known_less_well_does_not_leave_all_unknown(monkeypatch):
+    speeds = (float(rad_per_s(560.0)), float(rad_per_s(760.0)))
+    thresholds = []
+
+    def roughly(model, around, *, threshold=1e-8, progress):
+        thresholds.append(threshold)
+        if threshold < 5e-8 and model.shaft_stiffness_factor > 1.0:
+            raise ArithmeticError("multipliers are known to 5e-08 only")
+        return tongues(model, around, threshold=threshold, progress=progress)
+
+    monkeypatch.setattr(module, "tongues", roughly)
+    found = worst_case_in_torsion(GEARBOX.torsional, speeds, Tolerances(shaft_stiffness=0.1))
+    monkeypatch.undo()
+    assert thresholds.count(1e-7) == 1
+    expected = worst_case_in_torsion(GEARBOX.torsional, speeds, Tolerances(shaft_stiffness=0.1))
+    assert_allclose(found.swept, expected.swept, rtol=1e-6)
 
 
 def test_of_a_tongue_that_reaches_into_the_range_the_growth_there_is_told():
