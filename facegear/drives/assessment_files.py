@@ -193,7 +193,8 @@ def _in_torsion(found: Assessment) -> Iterator[Paragraph | Picture]:
     yield Picture(
         draw.dynamic_load(found.response, found.static_force),
         "Forces between teeth under the torque of one pinion's power, over speed, and at its resonances between the "
-        "speeds; none where the gearbox is unstable. The axis is linear near zero and logarithmic beyond.",
+        "speeds; none where the gearbox is unstable. Where forces go beyond a hundred times the static one the axis is "
+        "logarithmic away from zero.",
         "Two curves over speed that part near resonances",
     )
 

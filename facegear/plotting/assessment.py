@@ -14,6 +14,8 @@ from facegear.support.parameters import rpm
 
 _SPEED = "speed of the face gear [rpm]"
 _STABLE = 0.35
+# Largest force over the static one from which a linear axis would hide all but the largest.
+_DECADES = 100.0
 Intervals = Sequence[tuple[float, float]]
 
 
@@ -79,6 +81,8 @@ def _strip(ax: Axes, place: float, intervals: Intervals, speeds_rpm: tuple[float
 def dynamic_load(response: xr.Dataset, static: float) -> Figure:
     """Draw the largest and the smallest force of a tooth pair over speed, and at peaks; gaps where it is unstable.
 
+    The axis is linear, but for forces beyond a hundred times the static one, where it is logarithmic away from zero.
+
     Parameters
     ----------
     response : xarray.Dataset
@@ -93,8 +97,10 @@ def dynamic_load(response: xr.Dataset, static: float) -> Figure:
     ax.plot(speed, np.asarray(lowest) / 1e3, color=ORANGE, marker=".", label="smallest of a pair")
     _peaks(ax, response, 0.0, 1e3)
     ax.axhline(static / 1e3, color=INK, linestyle="--", linewidth=1.0, label="all pairs together, at rest")
-    # Linear up to a power of ten, or labels would meet at zero.
-    ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(2.0 * static / 1e3)), linscale=2.0)
+    drawn = np.concatenate([line.get_ydata() for line in ax.lines]).astype(float)
+    if np.abs(drawn[np.isfinite(drawn)]).max() > _DECADES * static / 1e3:
+        # Linear up to a power of ten, or labels would meet at zero.
+        ax.set_yscale("symlog", linthresh=10.0 ** np.ceil(np.log10(2.0 * static / 1e3)), linscale=2.0)
     ax.set(xlabel=_SPEED, ylabel="force between teeth [kN]")
     figure.legend(loc="outside lower center", ncols=2)
     return figure
