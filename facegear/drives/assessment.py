@@ -250,8 +250,11 @@ class Assessment:
     @property
     def not_varied(self) -> str:
         """What no model includes."""
+        count = len(self.file.transverse.gear.pinion_angles)
+        alone = f"the other {'pinion' if count == 2 else 'pinions'} in torsion, where there is one, "
         return (
             "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
+            f"{alone * (count > 1 and self.file.torsional is not None)}"
             "temperature; tolerances are those of the file's own contact and teeth, and of its own arm in torsion; "
             "the driving force is the same at all speeds, and speeds outside the range and its tolerance are not "
             "looked at."

@@ -42,7 +42,7 @@ def response_columns(table: xr.Dataset) -> dict[str, list[object]]:
     }
     basis = ("nodal_circles", "nodal_diameters", "settled")
     of_model = ("contact", "force", "teeth", *basis)
-    headings = (*of_model, "speed_rpm", "pinion", *(f"{n}_{u}" for n, u in forces.items()))
+    headings = (*of_model, "speed_rpm", "pinion", *(_heading(n, u) for n, u in forces.items()))
     rows = [
         (
             *(str(table[name].values[model]) for name in ("contact", "force", "teeth")),
@@ -66,5 +66,10 @@ def peak_columns(table: xr.Dataset) -> dict[str, list[object]]:
         **names,
         "speed_rpm": rpm(table["peak_speed"].values).tolist(),
         "pinion": [int(number) + 1 for number in table["pinion"].values],
-        **{f"{name}_{table[name].attrs['units']}": table[name].values.tolist() for name in forces},
+        **{_heading(name, table[name].attrs["units"]): table[name].values.tolist() for name in forces},
     }
+
+
+def _heading(name: str, unit: str) -> str:
+    """Column of a force: rms is that of what varies."""
+    return f"{name.replace('rms', 'rms_of_what_varies')}_{unit}"

@@ -53,7 +53,8 @@ def _verdict(found: Assessment) -> Section:
         Paragraph(f"{found.file.name}.", strong=True),
         Paragraph(found.headline, "good" if good else "bad", strong=True),
     ]
-    said = [*found.over_tolerances, found.dynamic_load, *found.forced, found.change]
+    # Forced responses stand in their own section alone.
+    said = [*found.over_tolerances, found.dynamic_load, found.change]
     parts.append(Listing(tuple(sentence for sentence in said if sentence)))
     parts.append(Paragraph(found.not_varied, "bad"))
     return Section("Verdict", tuple(parts))
@@ -231,7 +232,7 @@ def _of_the_disk(found: Assessment) -> Iterator[Paragraph | Picture | Table | Li
         for peak in _highest_peaks(each.data, 3 if each.settled else 2)
     )
     if rows:
-        forces = ("rms of the force [N]", "lowest less static [N]", "highest less static [N]")
+        forces = ("rms of what varies of the force [N]", "lowest less static [N]", "highest less static [N]")
         headings = ("model", "mode / harmonic of the mesh", "speed [rpm]", *forces)
         yield Table((*headings, _BASIS, "settled"), rows, "Highest resonances of the force of a mesh")
 

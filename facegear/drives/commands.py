@@ -20,6 +20,7 @@ from facegear.drives.drive_text import drive_text, write_drive_file
 from facegear.drives.examples import about, example_names, example_text
 from facegear.drives.new_drive import all_keys, completed, missing, value_in
 from facegear.drives.refusals import told
+from facegear.support.files import files_written_whole
 
 DONE, REFUSED, MISUSED, INTERRUPTED = 0, 1, 2, 130
 
@@ -127,8 +128,11 @@ def stability_map(options: argparse.Namespace) -> int:
         )
     except ValueError as problem:
         raise UsageError(told(problem)) from problem
+    # All of them or none: an interruption leaves no map beside an older picture of another.
+    with files_written_whole(outputs) as places:
+        for place in places:
+            WRITERS[place.suffix](found, place)
     for path in outputs:
-        WRITERS[path.suffix](found, path)
         tell(f"The map: {path}")
     return DONE
 

@@ -152,6 +152,9 @@ def checked_value(path: str, key: Key, value: Any) -> Any:
     if key.kind == "text":
         if not isinstance(value, str) or not value.strip() or len(value) > LONGEST_TEXT:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}")
+        if "\0" in value:
+            # Many programs end a text there, netCDF's readers among them.
+            raise ValueError(f"{path} must be {key.valid}, none of them NUL, got {_shown(value)}")
         return value.strip()
     if key.kind == "choice":
         if not isinstance(value, str) or value not in key.choices:

@@ -17,6 +17,10 @@ Content = dict[str, Any]
 """What a drive file says: keys and values by section."""
 
 
+# Keys whose value is greater than that of another one in the same section.
+_GREATER_THAN = {"gear_teeth": "pinion_teeth", "highest_speed_rpm": "lowest_speed_rpm"}
+
+
 def value_in(text: str, key: Key) -> Any:
     """Value of a key as somebody typed it.
 
@@ -113,11 +117,22 @@ def _ask_for(
         value = value_in(typed, key)
         try:
             checked_value(f"{section}.{key.name}", key, value)
+            _require_greater(content, section, key, value)
         except (TypeError, ValueError) as problem:
             tell(str(problem))
         else:
             content.setdefault(section, {})[key.name] = value
             return
+
+
+def _require_greater(content: Content, section: str, key: Key, value: Any) -> None:
+    """Refuse at once what is not greater than a value that is known and must be less."""
+    lesser = _GREATER_THAN.get(key.name)
+    known = content.get(section, {}).get(lesser)
+    if known is not None and not value > known:
+        raise ValueError(
+            f"{section}.{key.name} must be greater than {section}.{lesser} = {known:g}, got {value:g}"
+        )
 
 
 def _named(message: str) -> tuple[str, Key] | None:

@@ -223,6 +223,8 @@ def torsion(found: Findings) -> Section:
         ),
         number_table(found.torsional_rows, "Natural frequencies and speeds of the gearbox"),
     ]
+    if (count := len(found.file.transverse.gear.pinion_angles)) > 1:
+        parts.insert(0, Paragraph(f"In torsion there is one pinion; the drive has {count}."))
     if found.file.play is None:
         parts.append(Paragraph("The file gives the teeth no play (gearbox.backlash_um)."))
     elif found.play is None:

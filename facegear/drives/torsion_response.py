@@ -155,4 +155,5 @@ def peaks_table(response: xr.Dataset, parameters: str) -> xr.Dataset | None:
 
 
 def _force(dims: str | tuple[str, ...], values: Any, name: str) -> Any:
-    return variable(dims, values, f"Force of a tooth pair, {name}", "N", rtol=1e-6, atol=1e-6)
+    which = "rms of what varies" if name == "rms" else name
+    return variable(dims, values, f"Force of a tooth pair, {which}", "N", rtol=1e-6, atol=1e-6)

@@ -13,8 +13,8 @@ import re
 import shutil
 import tempfile
 import unicodedata
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 _LONGEST_STEM = 60
@@ -117,6 +117,34 @@ def written_whole(path: Path) -> Iterator[Path]:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def files_written_whole(paths: Sequence[Path]) -> Iterator[tuple[Path, ...]]:
+    """Give places to write several files to, which become the files when all of them are written.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The files; their folders are made.
+
+    Yields
+    ------
+    tuple of Path
+        The same names, each in a hidden folder beside its file. What was at `paths` stays if the block raises.
+    """
+    with ExitStack() as hidden:
+        places = []
+        for path in paths:
+            with _about(path):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                _clear_leftovers(path)
+                folder = tempfile.mkdtemp(prefix=f"{_hidden(path)}{os.getpid()}.", dir=path.parent)
+            hidden.callback(shutil.rmtree, folder, ignore_errors=True)
+            places.append(Path(folder, path.name))
+        yield tuple(places)
+        for place, path in zip(places, paths, strict=True):
+            place.replace(path)
 
 
 @contextmanager

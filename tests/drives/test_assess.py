@@ -6,16 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
 from facegear.drives.assess import _Found, _in_torsion, _Tried, assess
 from facegear.drives.assessment import Assessment
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.basis import with_basis
 from facegear.drives.drive_file import parse_drive, read_drive_file
-from facegear.drives.findings import TORSION
+from facegear.drives.findings import TORSION, Findings
 from facegear.drives.growth_words import told
 from facegear.drives.intervals import gaps
 from facegear.drives.outcome import Outcome
+from facegear.drives.sections import torsion as torsion_section
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
@@ -239,6 +241,28 @@ def test_models_are_listed_with_their_basis_and_those_of_torsion_too(tmp_path):
     assert rows[1].startswith("disk,Tregold,")
     assert ",2,5,(1+8)/1,200 to 300; 400 to 410" in rows[1]
     assert rows[2].startswith('torsion,"Tregold, arm as printed",,,')
+
+
+def test_that_torsion_has_one_pinion_is_said_where_the_drive_has_more():
+    text = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+    one = parse_drive(text)
+    content = yaml.safe_load(text)
+    content["pinions"]["angles_deg"] = [0, 120]
+    two = parse_drive(yaml.safe_dump(content))
+    said = "the other pinion in torsion, where there is one, temperature"
+    assert said not in assessment(outcome("Tregold", DEAD, RIGID), file=one).not_varied
+    assert said in assessment(outcome("Tregold", DEAD, RIGID), file=two).not_varied
+    content["pinions"]["angles_deg"] = [0, 120, 240]
+    three = parse_drive(yaml.safe_dump(content))
+    assert (
+        "the other pinions in torsion" in assessment(outcome("Tregold", DEAD, RIGID), file=three).not_varied
+    )
+    content["operation"] |= {"lowest_speed_rpm": 990}
+    for pinions, shown in (([0], False), ([0, 120], True)):
+        content["pinions"]["angles_deg"] = pinions
+        file = parse_drive(yaml.safe_dump(content))
+        section = torsion_section(Findings(file, cells=2, jobs=1))
+        assert ("In torsion there is one pinion; the drive has 2." in section.as_html()) is shown
 
 
 def test_torsion_is_looked_at_in_the_tolerance_of_speed():

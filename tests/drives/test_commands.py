@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from facegear.drives import commands
+from facegear.drives import commands, sweeps
 from facegear.drives.command import main
 from facegear.drives.drive_file import read_drive_file
 from facegear.drives.drive_schema import schema
@@ -94,23 +94,24 @@ def test_what_a_new_file_lacks_is_named_by_its_flags(here, capsys, monkeypatch):
 
 
 def test_on_a_terminal_it_asks_until_answers_can_be_used(here, capsys, monkeypatch):
-    # A comma, too many teeth for the gear, which turns up only with all the rest, then what is right.
+    # Too few teeth for the gear, a comma, a bore that is too large, which turns up with all, then what is right.
     answers = [
         "26",
         "20",
+        "130",
         "3,175",
         "3.175",
         "0.03",
-        "50",
+        "400",
         "1",
         "3",
         "1",
         "100",
+        "90",
         "1000",
         "447",
         "5000",
-        "26",
-        "130",
+        "50",
     ]
     monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
     monkeypatch.setattr(commands, "ask", lambda question: asked.append(question) or answers.pop(0))
@@ -120,7 +121,16 @@ def test_on_a_terminal_it_asks_until_answers_can_be_used(here, capsys, monkeypat
     assert asked[0] == "gears.pinion_teeth: N_1, teeth of the pinion (a whole number from 10 to 300)? "
     err = capsys.readouterr().err
     assert "a point, not a comma: 3.175" in err
-    assert "gears.gear_teeth" in err
+    assert "gears.gear_teeth must be greater than gears.pinion_teeth = 26, got 20\n" in err
+    assert (
+        "operation.highest_speed_rpm must be greater than operation.lowest_speed_rpm = 100, got 90\n" in err
+    )
+    assert "body.bore_radius_mm must lie between" in err
+    assert [question.partition(":")[0] for question in asked][:3] == [
+        "gears.pinion_teeth",
+        "gears.gear_teeth",
+        "gears.gear_teeth",
+    ]
     assert (read_drive_file("my.yaml").name, read_drive_file("my.yaml").drive.gear_teeth) == ("Mine", 130)
 
 
@@ -179,6 +189,19 @@ def test_a_map_that_there_is_not(here, capsys, words, told):
     assert main(["map", "my.yaml", *words.split()]) == 2
     assert told in capsys.readouterr().err
     assert [path.name for path in here.iterdir()] == ["my.yaml"]
+
+
+def test_a_map_that_is_interrupted_leaves_no_file_of_three(here, monkeypatch):
+    (here / "my.yaml").write_text(CASE_1, encoding="utf-8")
+    (here / "my_map.csv").write_text("older")
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(sweeps, "WRITERS", dict(sweeps.WRITERS) | {".svg": interrupted})
+    assert main(["map", "my.yaml", "--cells", "2", "--speeds", "500", "600", "--jobs", "1"]) == 130
+    assert sorted(path.name for path in here.iterdir()) == ["my.yaml", "my_map.csv"]
+    assert (here / "my_map.csv").read_text() == "older"
 
 
 def test_examples_are_listed_and_printed(capsys):

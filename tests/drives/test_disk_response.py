@@ -282,6 +282,17 @@ def test_flanks_that_part_at_a_resonance_between_the_speeds_are_told():
     assert quiet.endswith("at 0; of 2 peaks of resonances between them, at 0.")
 
 
+def test_a_forced_response_stands_once_on_the_page_and_its_rms_is_of_what_varies(tmp_path):
+    response = forced(1234.0)
+    found = Assessment(CASE_1, (Outcome(response.variant, (), True),), {}, {}, None, "", (), (response,))
+    page = write_assessment(found, tmp_path).read_text(encoding="utf-8")
+    assert page.count("a static transmission error of 1 µm") == 1
+    assert "rms of what varies of the force [N]" in page
+    for name in ("disk_response.csv", "disk_response_peaks.csv"):
+        heading = (tmp_path / name).read_text(encoding="utf-8-sig").partition("\n")[0]
+        assert "force_rms_of_what_varies_N,force_lowest_N" in heading
+
+
 def test_where_flanks_would_part_is_said_right_behind_the_verdict(tmp_path):
     """As of the model that is worst of those of the disk, and of torsion, where the static force is in the response."""
     static = 100.0

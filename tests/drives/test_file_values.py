@@ -73,6 +73,11 @@ from tests.drives.drive_files import CASE_1, refusal
         ),
         ("name: Case I", "name: 3", r"name must be text of 1 to 80 characters, got 3"),
         ("name: Case I", "name: '  '", r"name must be text of 1 to 80 characters, got '  '"),
+        (
+            "name: Case I",
+            'name: "a\\0b"',
+            r"name must be text .*, none of them NUL, got 'a\\x00b'",
+        ),
         ("name: Case I", f"name: {'x' * 81}", r"name must be text of 1 to 80 characters, got 'xxx"),
         ("name: Case I", 'name: "\\ud800"', r"line 2: '\\ud800' holds half a character"),
         (

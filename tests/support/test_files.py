@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from facegear.support.files import file_stem, folder_written_whole, written_whole
+from facegear.support.files import file_stem, files_written_whole, folder_written_whole, written_whole
 
 
 def test_a_file_appears_when_all_is_written(tmp_path):
@@ -116,6 +116,26 @@ def test_a_folder_that_is_there_keeps_what_is_not_replaced(tmp_path):
         "mine.txt": "mine",
         "one.txt": "1",
     }
+
+
+def test_several_files_appear_together_or_not_at_all(tmp_path):
+    one, two = paths = tmp_path / "a" / "one.nc", tmp_path / "b" / "two.csv"
+
+    def write(text, stop=False):
+        with files_written_whole(paths) as places:
+            assert [place.name for place in places] == ["one.nc", "two.csv"]
+            places[0].write_text(text)
+            if stop:
+                raise KeyboardInterrupt
+            places[1].write_text(text)
+
+    for text, before in (("1", None), ("2", "1")):
+        with pytest.raises(KeyboardInterrupt):
+            write(text, stop=True)
+        assert [path.read_text() if path.exists() else None for path in paths] == [before, before]
+        write(text)
+        assert one.read_text() == two.read_text() == text
+        assert sorted(path.name for path in tmp_path.rglob("*")) == ["a", "b", "one.nc", "two.csv"]
 
 
 def test_what_an_earlier_time_wrote_is_removed_and_what_others_wrote_is_not(tmp_path):
