@@ -89,7 +89,8 @@ def as_markdown(values: Sequence[OutsideValue]) -> str:
     """Return values from outside as a Markdown table."""
     lines = ["| quantity | from outside | value | here | deviation |", "|---|---|--:|--:|--:|"]
     for value in values:
-        digits = 10 if value.deviation < 1e-9 else 8
+        # Enough to see the deviation in.
+        digits = 10 if value.deviation < 1e-7 else 8
         unit = f" {value.unit}" if value.unit else ""
         numbers = (f"{number:.{digits}g}{unit}" for number in (value.outside, value.found))
         lines.append(

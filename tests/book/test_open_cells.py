@@ -17,6 +17,9 @@ ROOT = Path(__file__).resolve().parents[2]
 CHAPTERS = sorted((ROOT / "notebooks").glob("0*.ipynb"))
 
 chapters = pytest.mark.parametrize("path", CHAPTERS, ids=lambda path: path.stem)
+every_notebook = pytest.mark.parametrize(
+    "path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda path: path.stem
+)
 
 
 @pytest.mark.parametrize(
@@ -37,7 +40,7 @@ def test_names_are_told_that_a_cell_needs(source, needs, defines):
     assert defines <= found[1]
 
 
-@chapters
+@every_notebook
 def test_open_cells_need_nothing_that_is_folded(path):
     defined = set()
     for cell in code_cells(path):
@@ -47,7 +50,7 @@ def test_open_cells_need_nothing_that_is_folded(path):
             defined |= defines
 
 
-@chapters
+@every_notebook
 def test_open_cells_take_nothing_from_the_books_own_code(path):
     for cell in filter(is_open, code_cells(path)):
         for node in ast.walk(ast.parse(python(cell.source))):
