@@ -309,6 +309,6 @@ def best_change(name: str, effect: xr.Dataset, tongues: Sequence[Tongue]) -> lis
     if abs(widths[best] - now) <= _SAME_WIDTH:
         width = ""
     return [
-        f"Of small changes {what} helps most: it takes {width}the largest growth from {growth:.3g} to "
-        f"{growths[best]:.3g} 1/s ({name})."
+        f"Of small changes that do not make it grow faster {what} helps most: it takes {width}the largest growth "
+        f"from {growth:.3g} to {growths[best]:.3g} 1/s ({name})."
     ]
