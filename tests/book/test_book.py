@@ -197,7 +197,8 @@ def test_page_is_whole_and_readable(look: Callable[[int, str], Visit], width: in
 
     for picture in page.locator("img").evaluate_all(PICTURES):
         # Without words Sphinx puts the name of the file there.
-        assert picture["alt"].strip() and not picture["alt"].endswith((".svg", ".png")), picture
+        assert picture["alt"].strip(), picture
+        assert not picture["alt"].endswith((".svg", ".png")), picture
         assert picture["natural"] > 0, picture
         assert not picture["shown"] or picture["background"] >= 0.8 or not picture["figure"], picture
 
