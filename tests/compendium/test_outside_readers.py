@@ -134,8 +134,8 @@ def test_files_of_an_assessment_are_read_by_netcdf_c_and_pandas(tmp_path):
         assert_same(folder / name)
     models, response = (pd.read_csv(folder / f"{name}.csv") for name in ("models", "disk_response"))
     assert models["contact"].tolist() == ["'=Tregold"] * 2
-    assert response["force_rms_N"].tolist()[0] == 1.0
-    assert response["force_rms_N"].isna().tolist() == [False, True]
+    assert response["force_rms_of_what_varies_N"].tolist()[0] == 1.0
+    assert response["force_rms_of_what_varies_N"].isna().tolist() == [False, True]
     assert response["speed_rpm"].tolist() == pytest.approx([572.957795131, 582.507091716])
     assert sorted(path.suffix for path in folder.iterdir()) == [".csv"] * 3 + [".html"] + [".nc"] * 5
 
