@@ -150,8 +150,8 @@ class Assessment:
         else:
             words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
         words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
-        values = ", tolerances included" if self.worst else ""
-        words += f" Speeds at which every model is stable{values}: {told(self.always_stable)}."
+        values = ", the values of its tolerances that were looked at included" if self.worst else ""
+        words += f" Speeds at which every model is known to be stable{values}: {told(self.always_stable)}."
         families = (
             "all models of the disk's motion, or all of torsion, are" if self.torsion else "all models are"
         )

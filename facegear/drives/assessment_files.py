@@ -94,8 +94,8 @@ def _models(found: Assessment) -> Section:
             (float(rpm(low)), float(rpm(high))),
         ),
         "Stable and unstable speeds under every model, the file's own contact and teeth first. The last strip: "
-        "stable under all (tolerances included), unstable under all of the disk's motion or all of torsion, or "
-        "depending on the model.",
+        "stable under all (values of the tolerances that were looked at included), unstable under all of the disk's "
+        "motion or all of torsion, or depending on the model.",
         "Horizontal strips over speed, one for each model, green with red intervals; a last one in three colours",
     )
     names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
@@ -146,9 +146,10 @@ def _tolerances(found: Assessment) -> Section:
         "Of the file's own contact and teeth, at both ends and the middle of each stiffness and both ends of each "
         "damping, over speeds so wide that no tongue comes into the range from outside unseen. Natural frequencies "
         "rise with every stiffness: a tongue that stands at all of these values has swept all speeds between its "
-        "places. One that stands at some of them may reach to the next, and there it is not known. Where none stands "
-        "at any, the largest growth is followed along the edges of the range. A tongue that stands nowhere but "
-        "between these values and edges would not be seen, and between them one may grow faster than at any."
+        "places. One that stands at some of them may reach to the next, and there it is not known. Where none "
+        "comes into the range, the largest growth there is followed along the edges. A tongue that stands at none of "
+        "these values or edges, but between them, is not seen: stable is what was looked at. "
+        "Between the values one may also grow faster than at any."
     )
     return Section(title, (words, Listing(found.over_tolerances), *tables))
 

@@ -73,7 +73,7 @@ def _outcome(case: WorstCase) -> str:
     if case.unknown:
         return f"not known ({case.unknown})"
     if case.is_stable:
-        return "stable for all values"
+        return "stable at all values looked at"
     if case.opens:
         speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
         return f"stable at all values looked at; tongues open between them at {speeds} rpm"
@@ -85,7 +85,7 @@ def _outcome(case: WorstCase) -> str:
         else ""
     )
     if not case.swept:
-        return f"{rest}; stable for all values elsewhere"
+        return f"{rest}; stable elsewhere at all values looked at"
     words = f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"
     if case.fastest is None:
         words += "; between the values looked at, so that it is not known how fast"

@@ -66,7 +66,7 @@ class WorstCase:
 
     @property
     def is_stable(self) -> bool:
-        """Whether all values are known to be stable at all speeds."""
+        """Whether all values looked at are stable at all speeds, and no tongue found near can come there."""
         return not self.possible and not self.opens and not self.unknown
 
     @property
@@ -185,12 +185,12 @@ def _in_box(model: Any, parts: Mapping[str, float], wide: tuple[float, float]) -
     opens: list[ClosingValue] = []
     # Along each edge of the box: more stiffness may open a tongue between two corners, and so may more damping.
     for place, words in enumerate(parts):
-        if possible or not parts[words]:
+        if cut(united(possible), wide) or not parts[words]:
             continue
         way = np.linspace(levels[place][0], levels[place][-1], _ALONG)
         ends = [tuple(dict.fromkeys([each[0], each[-1]])) for each in levels]
         for corner in product(*ends[:place], ends[place][:1], *ends[place + 1 :]):
-            opens += growth_peaks(at(corner), names[words], way, around).closing_values
+            opens += growth_peaks(at(corner), names[words], way, wide).closing_values
     return WorstCase(
         wide,
         {point: _within(at(point), each, wide) for point, each in found.items()},

@@ -56,7 +56,7 @@ class TestVerdict:
         assert (found.verdict, found.decides) == ("safe under all", ())
         assert found.headline == (
             "Safe under all: from 100 to 1000 rpm, of 2 models of the disk's motion none is unstable at any speed. "
-            "Speeds at which every model is stable: 100 to 1000 rpm. Speeds at which all models are unstable: no speed."
+            "Speeds at which every model is known to be stable: 100 to 1000 rpm. Speeds at which all models are unstable: no speed."
         )
 
     def test_unstable_under_all_though_not_at_the_same_speeds(self):
@@ -176,7 +176,7 @@ class TestVerdict:
         nowhere = {DEAD: replace(worst[DEAD], points={}, swept=())}
         (said,) = replace(found, worst=nowhere).over_tolerances
         assert said.endswith(
-            "that stands at some of the values looked at only; stable for all values elsewhere."
+            "that stands at some of the values looked at only; stable elsewhere at all values looked at."
         )
         assert replace(found, worst=nowhere).verdict == "depends"
 

@@ -319,7 +319,7 @@ def test_where_flanks_would_part_is_said_right_behind_the_verdict(tmp_path):
     green = "#2e7d32"
     for name, found, shown in (("held", held, True), ("shaken", shaken, False)):
         page = write_assessment(found, tmp_path / name).read_text(encoding="utf-8")
-        assert (green in page[: page.index("Speeds at which every model is stable")]) is shown
+        assert (green in page[: page.index("Speeds at which every model is known to be stable")]) is shown
 
 
 def test_peaks_are_kept_with_their_ends_and_the_model_they_are_of():
