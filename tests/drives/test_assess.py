@@ -56,7 +56,8 @@ class TestVerdict:
         assert (found.verdict, found.decides) == ("safe under all", ())
         assert found.headline == (
             "Safe under all: from 100 to 1000 rpm, of 2 models of the disk's motion none is unstable at any speed. "
-            "Speeds at which every model is known to be stable: 100 to 1000 rpm. Speeds at which all models are unstable: no speed."
+            "Speeds at which every model is known to be stable: 100 to 1000 rpm. "
+            "Speeds at which all models are unstable: no speed."
         )
 
     def test_unstable_under_all_though_not_at_the_same_speeds(self):
@@ -209,7 +210,7 @@ def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all
     headline = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion).headline
     assert headline.startswith("Unstable under all, because of torsion; from 100 to 1000 rpm, of 1 models")
     assert "Each of the 2 models of torsion is unstable somewhere." in headline
-    assert "every model is stable: 100 to 600, 620 to 700, 720 to 1000 rpm." in headline
+    assert "every model is known to be stable: 100 to 600, 620 to 700, 720 to 1000 rpm." in headline
     assert "of the disk's motion, or all of torsion, are unstable: no speed." in headline
 
 
