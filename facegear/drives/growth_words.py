@@ -77,8 +77,7 @@ def _outcome(case: WorstCase) -> str:
     if case.opens:
         speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
         return f"stable at all values looked at; tongues open between them at {speeds} rpm"
-    left = cut(gaps(case.swept, case.speeds), case.speeds)
-    left = tuple(part for one in left for part in cut(case.possible, one))
+    left = tuple(part for gap in gaps(case.swept, case.speeds) for part in cut(case.possible, gap))
     rest = (
         f"not known at {told(left)}, where a tongue may come that stands at some of the values looked at only"
         if left

@@ -182,10 +182,11 @@ def _in_box(model: Any, parts: Mapping[str, float], wide: tuple[float, float]) -
         everywhere = all(here)
         swept += [(lower, upper)] if everywhere else [(t.lower, t.upper) for each in here for t in each]
         possible.append((lower, upper) if everywhere else (lower / step, upper * step))
+    inside = cut(united(possible), wide)
     opens: list[ClosingValue] = []
     # Along each edge of the box: more stiffness may open a tongue between two corners, and so may more damping.
     for place, words in enumerate(parts):
-        if cut(united(possible), wide) or not parts[words]:
+        if inside or not parts[words]:
             continue
         way = np.linspace(levels[place][0], levels[place][-1], _ALONG)
         ends = [tuple(dict.fromkeys([each[0], each[-1]])) for each in levels]
@@ -195,7 +196,7 @@ def _in_box(model: Any, parts: Mapping[str, float], wide: tuple[float, float]) -
         wide,
         {point: _within(at(point), each, wide) for point, each in found.items()},
         cut(united(swept), wide),
-        cut(united(possible), wide),
+        inside,
         tuple(opens),
         tuple(parts),
     )
