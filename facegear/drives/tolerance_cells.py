@@ -33,7 +33,7 @@ HALF, MOST = 0.5, 0.8
 of a resonance may double from there, and of a fine one."""
 
 # Work spent on halves of what is coarse no more, as `search_seconds` has it: alike on every machine.
-_SECONDS = 4.0
+_SECONDS = 12.0
 # Part by which the search goes beyond the speeds from which tongues can come, for what of a frequency no spring makes.
 _MARGIN = 1.02
 # Growth in a period from which a speed counts as unstable where that of other searches cannot be told.
