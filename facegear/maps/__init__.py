@@ -1,6 +1,6 @@
 """Where a model is unstable: maps over two parameters, and tongues found however narrow.
 
-`stability_map` goes over its `axes` by columns (`map_columns`) or sheets of them (`map_sheets`), by speeds in `rows`, or
+`stability_map` goes over its `axes` by columns (`map_columns`) or sheets of them (`map_sheets`), by `rows`, or
 from cell to cell (`cells`), as the systems of a `sweep` have in common (`likeness`). `tracing` finds tongues at the
 speeds that `scanning` says; values of a parameter at which one closes are in `closing`, tips in which one ends in
 `lobes`, the largest growth rate and where it vanishes in `peaks`, derivatives in `sensitivity` and `exponents`.
