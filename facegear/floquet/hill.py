@@ -22,7 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
-from facegear.floquet.multipliers import Method, multipliers
+from facegear.floquet.methods import Method
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.floquet.piecewise import fourier_series
 from facegear.floquet.stepping import Family

@@ -22,15 +22,12 @@ from facegear.floquet.columns import (
     family_matrices,
 )
 from facegear.floquet.load_columns import LoadColumn
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import (
     system_at,
 )
 from facegear.floquet.multiplier_curves import FrozenMotions, degree_between
-from facegear.floquet.multipliers import (
-    Method,
-    multipliers,
-    with_method,
-)
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.sheets import SHEET_TOLERANCE, is_interpolated, samples, windows
 from facegear.floquet.stepping import Family

@@ -16,12 +16,9 @@ from facegear.floquet.columns import (
     agree,
 )
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.error_estimates import rounding_error
 from facegear.floquet.free_modes import UnsuitableSystemError
-from facegear.floquet.multipliers import (
-    Method,
-    rounding_error,
-    with_method,
-)
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.sheets import SHEET_TOLERANCE, Sheet, samples, windows
 from facegear.floquet.stepping import Family

@@ -26,16 +26,13 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
+from facegear.floquet.error_estimates import rounding_shift
 from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import (
     Model,
     parameter_path,
     require_model,
-)
-from facegear.floquet.multipliers import (
-    Method,
-    rounding_shift,
-    with_method,
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.axes import checked_speeds, checked_values, speed_coordinates
@@ -74,8 +71,8 @@ def stability_map(
     values : array_like, shape (V,)
         Values of the parameter, in the unit of its field.
     method : Method, optional
-        Method of :mod:`facegear.floquet.multipliers`; if left out, what
-        :func:`facegear.floquet.multipliers.with_method` finds to suit each column.
+        Method of :mod:`facegear.floquet.methods`; if left out, what
+        :func:`facegear.floquet.methods.with_method` finds to suit each column.
     jobs : int
         Number of workers, as joblib's ``n_jobs``; -1 for all processors, or all workers of the backend that
         ``joblib.parallel_config`` names. On this machine they are threads where only load parameters change, else

@@ -9,14 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from facegear.floquet.methods import Method
 from facegear.floquet.models import (
     Model,
     is_whole_number,
     parameter_path,
     replace_at,
-)
-from facegear.floquet.multipliers import (
-    Method,
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.likeness import load_parameters_of, same_but_load_parameters, same_layout

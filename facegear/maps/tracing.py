@@ -16,9 +16,10 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from facegear.floquet.labels import Combination, Kind, combination
+from facegear.floquet.methods import Method
 from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
-from facegear.floquet.multipliers import Method, multipliers
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.rigid_motion import rigid_motions
 from facegear.maps.parallel import computed, parts_of
@@ -100,7 +101,7 @@ def tongues(
     speeds : (low, high)
         Range looked at [rad/s], as any two numbers.
     method : Method, optional
-        Method of :mod:`facegear.floquet.multipliers`; see :func:`facegear.floquet.multipliers.with_method` if left out.
+        Method of :mod:`facegear.floquet.methods`; see :func:`facegear.floquet.methods.with_method` if left out.
     threshold : float
         Growth in a period, max|λ| − 1, from which a speed counts as unstable [-]. Damping keeps stable multipliers
         clearly inside the unit circle; without damping they lie on it, and rounding alone must not look like growth.

@@ -10,13 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Chebyshev
 
-from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    error_estimate,
-    growth_rate,
-    multipliers,
-    transition_matrix,
-)
+from facegear.floquet.error_estimates import error_estimate
+from facegear.floquet.methods import AdaptiveMagnus
+from facegear.floquet.multipliers import growth_rate, multipliers, transition_matrix
 from facegear.floquet.piecewise import fourier_series
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import CentroidPath, ContactPath
