@@ -151,13 +151,17 @@ def test_caption_that_offers_numbers_itself_and_cells_without_figure_are_left_al
     ("written", "read"),
     [
         ("off by 1.6e-06 of it", "off by 1.6·10⁻⁶ of it"),
-        ("1e-12; -2.5e+08 N/m", "10⁻¹²; -2.5·10⁸ N/m"),
+        ("1e-12; -2.5e+08 N/m", "10⁻¹²; −2.5·10⁸ N/m"),
         ("| 1.047e+04 | 5.6e-04 | 3e-2 |", "| 10470 | 0.00056 | 0.03 |"),
         ("$k_m$ = 1.5763e+08 N/m", "$k_m$ = 1.5763·10⁸ N/m"),
         ("$k = 1.5e+08$", r"$k = 1.5\cdot 10^{8}$"),
         ("`rtol=1e-9` and\n```python\nx = 1e-9\n```", "`rtol=1e-9` and\n```python\nx = 1e-9\n```"),
-        ("| -0.00 | −0 | -0.05 | 3-0 |", "| 0.00 | 0 | -0.05 | 3-0 |"),
+        ("| -0.00 | −0 | -0.05 | 3-0 |", "| 0.00 | 0 | −0.05 | 3-0 |"),
         ("module_1e5 and 2.1e", "module_1e5 and 2.1e"),
+        ("from -1.7 to -0.7 %, (-5), +-2", "from −1.7 to −0.7 %, (−5), +−2"),
+        ("-2.05-1670.86i; 2026-11-30; (7-2)", "−2.05−1670.86i; 2026-11-30; (7-2)"),
+        ('<p style="margin:-1px"> -1 < 2</p>', '<p style="margin:-1px"> −1 < 2</p>'),
+        ("|--:|---|\n| -1 | $-1$ |", "|--:|---|\n| −1 | $-1$ |"),
     ],
 )
 def test_numbers_are_put_in_a_readers_digits(written, read):
