@@ -144,13 +144,19 @@ def in_readers_digits(text: str) -> str:
     return _in_running_text(text, change)
 
 
+# The hyphen at the beginning of a cell of a table of HTML.
+HYPHEN_IN_CELL = re.compile(r"(<td[^>]*>)-(?=\d)")
+
+
 def put_outputs_in_readers_digits(cell: nbformat.NotebookNode) -> None:
-    """Do that to what a cell shows as text of the page or leaves to be quoted there."""
+    """Do that to what a cell shows as text of the page or leaves to be quoted there; in tables of HTML a minus."""
     for output in cell.get("outputs", []):
         data = output.get("data", {})
         for kind in ("text/markdown", "application/papermill.record/text/plain"):
             if kind in data:
                 data[kind] = in_readers_digits(data[kind])
+        if "text/html" in data:
+            data["text/html"] = HYPHEN_IN_CELL.sub(r"\1−", data["text/html"])
 
 
 def counterparts(printed: PrintedFigure, figures: Iterable[BookFigure]) -> list[BookFigure]:
@@ -196,7 +202,8 @@ def figure_index(contents: Path, notebooks: Sequence[Path]) -> str:
         found = counterparts(printed, figures)
         shown += printed.data and bool(found)
         here = ", ".join(f"{{numref}}`{figure.label}`" for figure in found)
-        here = here or printed.not_drawn or "its chapter is not in the book yet"
+        reason = printed.not_drawn[:1].lower() + printed.not_drawn[1:]
+        here = here or (f"not drawn: {reason}" if reason else "its chapter is not in the book yet")
         if not found and not printed.not_drawn and printed.chapter in present:
             missing.append(printed.number)
         chapter = rows.setdefault(printed.chapter, [])
