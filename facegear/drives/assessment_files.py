@@ -202,12 +202,11 @@ def _in_torsion(found: Assessment) -> Iterator[Paragraph | Picture]:
     if found.response is None:
         yield Paragraph("In torsion it is computed for files with a section gearbox.")
         return
-    yield Paragraph(f"{found.dynamic_load}")
     yield Picture(
         draw.dynamic_load(found.response, found.static_force),
-        "Forces between teeth under the torque of one pinion's power, over speed, and at its resonances between the "
-        "speeds; none where the gearbox is unstable. Where forces go beyond a hundred times the static one the axis is "
-        "logarithmic away from zero.",
+        "Forces between teeth in torsion under the torque of one pinion's power, over speed, and at its resonances "
+        "between the speeds; none where the gearbox is unstable. Where forces go beyond a hundred times the static one "
+        "the axis is logarithmic away from zero.",
         "Two curves over speed that part near resonances",
     )
 

@@ -33,7 +33,7 @@ HALF, MOST = 0.5, 0.8
 of a resonance may double from there, and of a fine one."""
 
 # Work spent on halves of what is coarse no more, as `search_seconds` has it: alike on every machine.
-_SECONDS = 4.0
+_SECONDS = 12.0
 # Part by which the search goes beyond the speeds from which tongues can come, for what of a frequency no spring makes.
 _MARGIN = 1.02
 # Growth in a period from which a speed counts as unstable where that of other searches cannot be told.
@@ -175,10 +175,15 @@ class BoxSearch:
         heapq.heapify(queue)
         while queue and self._seconds < _SECONDS:
             *_, cell = heapq.heappop(queue)
-            # Where all speeds are swept there is nothing more to be found out.
-            for half in self._halves(cell) if gaps(united(self.swept), cell.speeds) else ():
+            for half in () if self._is_known(cell) else self._halves(cell):
                 heapq.heappush(queue, (-half.reach, next(number), half))
         self.possible += [cell.speeds for *_, cell in queue]
+
+    def _is_known(self, cell: Cell) -> bool:
+        """Whether all speeds of a cell are swept, and it is known how fast something grows at some of them."""
+        return not gaps(united(self.swept), cell.speeds) and any(
+            _stands(tongue, cell.speeds) for found in self.points.values() for tongue in found
+        )
 
     def _halves(self, cell: Cell) -> list[Cell]:
         """Look at a cell, keep what it tells, and return halves where they could tell more."""
@@ -292,7 +297,9 @@ def _judged(cell: Cell, corners: Sequence[_Corner]) -> _Judged:
             if label in everywhere:
                 found.swept.append(place)
                 found.possible.append(place)
-            else:
+            seen = any(_stands(t, cell.speeds) for each in at_corners for t in each if t.label == label)
+            if label not in everywhere or not seen:
+                # One that passes between the corners is halved, too: how fast it grows there is not known.
                 found.open.append(place)
         rest = [(t.lower, t.upper) for each in at_corners for t in each if t.label not in everywhere]
         found.swept.extend(rest)
@@ -300,6 +307,11 @@ def _judged(cell: Cell, corners: Sequence[_Corner]) -> _Judged:
     if cell.reach > 1.0:
         found.weak.extend(cell.reached(tongue) for corner in corners for tongue in corner.weak)
     return found
+
+
+def _stands(tongue: Tongue, speeds: Range) -> bool:
+    """Whether a tongue stands at some of the speeds."""
+    return tongue.lower < speeds[1] and speeds[0] < tongue.upper
 
 
 def _everywhere(at_corners: Sequence[Sequence[Tongue]]) -> set[str]:

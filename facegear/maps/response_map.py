@@ -18,8 +18,8 @@ from facegear.floquet.modes import mean_matrices, natural_exponents
 from facegear.floquet.multipliers import Method
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.response import SteadyResponse, steady_response
+from facegear.maps.axes import checked_speeds, checked_values, speed_coordinates
 from facegear.maps.parallel import computed, parts_of
-from facegear.maps.stability_map import checked_speeds, checked_values, speed_coordinates
 from facegear.support.parameters import number_of_workers, within
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray

@@ -32,10 +32,10 @@ _KINDS: tuple[Kind, ...] = get_args(Kind)
 
 # A rigid-body motion drifts: its double multiplier 1 is known to the root of rounding at best.
 _DRIFT = 1e-6
-# Time of a search by points of its first grid and size d of the matrices, points · factor · d^power [s]: measured with
-# disks of 14 to 68 coordinates at 200 to 600 rpm. Pairs of multipliers that meet add samples with d, the eigenvalue
-# problem of each adds the rest.
-_SECONDS, _POWER = 3.5e-8, 3.2
+# Time of a search by points of its first grid and size d of the matrices, points · (least + factor · d^power) [s]:
+# measured with gearboxes of 3 and 7 coordinates and disks of 5 to 84, at 200 to 600 and at 540 to 560 rpm. Pairs of
+# multipliers that meet add samples, the more the larger d is.
+_LEAST_SECONDS, _SECONDS, _POWER = 4e-4, 8e-8, 2.4
 
 # Samples of speed closer than this, relative, are one where a maximum is looked for.
 _APART = 1e-5
@@ -171,15 +171,15 @@ def search_seconds(model: Model, speeds: ArrayLike) -> float:
     Returns
     -------
     float
-        [s] on one core of a processor of 2023; right within a factor of three or so for disks. It goes with the
-        third power of the number of coordinates, and with the angle by which the fastest motion turns in a period.
+        [s] on one core of a processor of 2023; right within a factor of three or so. It goes with more than the
+        square of the number of coordinates, and with the angle by which the fastest motion turns in a period.
 
     Examples
     --------
     >>> from facegear.mechanics.cases import FIGURES
     >>> from facegear.floquet.models import replace_parameter
     >>> small = FIGURES["4.4a"].model()
-    >>> large = replace_parameter(small, "nodal_diameters", 6)
+    >>> large = replace_parameter(small, "nodal_diameters", 8)
     >>> search_seconds(large, (50.0, 70.0)) > 4.0 * search_seconds(small, (50.0, 70.0))
     True
     """
@@ -187,7 +187,7 @@ def search_seconds(model: Model, speeds: ArrayLike) -> float:
     motions = FrozenMotions.of(model, 1.0 / high, 1.0 / low)
     size = 2 * system_at(model, high).size
     samples = motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES).size
-    return float(samples * _SECONDS * size**_POWER)
+    return float(samples * (_LEAST_SECONDS + _SECONDS * size**_POWER))
 
 
 def _refuse_rigid_motion(system: PeriodicSystem) -> None:

@@ -417,6 +417,48 @@ def test_a_model_whose_computation_fails_is_among_those_that_failed():
     )
 
 
+class Recorder:
+    """Crew that only remembers what there is to do."""
+
+    def __init__(self):
+        self.added = []
+
+    def add(self, name, *work):
+        self.added.append(name)
+
+
+def test_a_main_model_that_cannot_be_computed_leaves_the_others_to_be():
+    said, crew = [], Recorder()
+    work = _Found(CASE_1, 0.02, 1, said.append)
+    number = len(work.cases)
+    for which in range(number):
+        work.take(crew, ("case", which), _Tried(None, "it does not converge"))
+    assert said[-1].startswith(f"case {number} of {number}: could not be computed (")
+    # Other teeth are tried all the same.
+    assert {name[1][0] for name in crew.added if name[0] == "teeth"} == set(range(number))
+    with pytest.raises(ArithmeticError, match=r"no model of the disk's motion could be computed: .*converge"):
+        work.assessment()
+    work.outcomes[0, 1] = outcome("Tregold", DEAD, RIGID_TOTAL)
+    work.others = {(0, 1): work.outcomes[0, 1].variant}
+    found = work.assessment()
+    assert found.verdict == "depends"
+    assert found.failed[0] == f"{work.cases[0].name}: it does not converge"
+    assert len(found.failed) == number
+
+
+def test_the_first_verdict_says_so_if_there_is_none(monkeypatch):
+    def fails(*args, **options):
+        raise ArithmeticError("it does not converge")
+
+    monkeypatch.setattr("facegear.drives.assess.tongues", fails)
+    said, crew = [], Recorder()
+    _Found(CASE_1, 0.02, 1, said.append).begin(crew)
+    assert said == [
+        "the drive as its file has it, in the basis of the file: it could not be computed (it does not converge)"
+    ]
+    assert ("case", 0) in crew.added
+
+
 @pytest.mark.slow
 @pytest.mark.takes(40)
 def test_models_are_those_of_the_report_and_of_single_searches(tmp_path):
