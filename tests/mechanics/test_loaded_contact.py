@@ -331,6 +331,8 @@ def test_a_period_that_no_series_follows_is_refused_of_plates_too(monkeypatch):
     def jumps(*_, **__):
         raise ValueError("function is not smooth")
 
+    # Lines of the unloaded contact are fitted, too, and kept.
+    _ = LoadedContact(CUT, 10.0).contact_ratio
     monkeypatch.setattr(PiecewiseChebyshev, "fit_together", jumps)
     with pytest.raises(ArithmeticError, match="contact changes at instants that were not found: function is"):
         _ = LoadedContact(CUT, 10.0, compliance="plate").contact_ratio
