@@ -110,8 +110,8 @@ def _peak_between(model: Model, low: float, high: float, resolution: float) -> t
     speeds = np.linspace(low, high, LANES)
     rates = growth(speeds)
     best = int(rates.argmax())
-    ends = speeds[[max(best - 1, 0), min(best + 1, LANES - 1)]].tolist()
-    found = largest_between(lambda speed: float(growth(np.array([speed]))[0]), *ends, resolution)
+    first, last = speeds[[max(best - 1, 0), min(best + 1, LANES - 1)]].tolist()
+    found = largest_between(lambda speed: float(growth(np.array([speed]))[0]), first, last, resolution)
     return max(found, (float(speeds[best]), float(rates[best])), key=lambda peak: peak[1])
 
 
