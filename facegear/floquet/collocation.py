@@ -85,13 +85,15 @@ class FreeMotion:
         angle = float((np.hypot(frequencies, np.sqrt(stiffest)) * periods).max())
         ends = merge_breakpoints([systems[0].breakpoints, np.array(instants)])
         self.edges = panel_edges(ends, angle, panel_angle)
+        # Of the free motion only what the loads ask for: its accelerations where they have mass, and so on.
+        self._orders = 3 if column.mass.any() else 2 if column.damping.any() else 1
         self.panels = self._build(nodes, self.edges[:-1], np.diff(self.edges))
         known = column.extremes() if len(systems) == 1 else column
         self._known = (known, self._halve_unresolved_panels(known, nodes))
-        self.kicks = [self._kick_data(system) for system in systems]
+        self.kicks = [self._kick_data(system) if self._orders == 3 else [] for system in systems]
 
     def _build(self, nodes: int, start: FloatArray, length: FloatArray) -> ForcePanels:
-        return ForcePanels.of(self._held.systems, self.modes, nodes, start, length)
+        return ForcePanels.of(self._held.systems, self.modes, nodes, start, length, self._orders)
 
     def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> FloatArray:
         """Halve panels until the contact forces of all initial states are resolved at the given values.
@@ -132,10 +134,11 @@ class FreeMotion:
         for a, load in enumerate(system.loads):
             if load.rate != "total":
                 continue
+            shapes = weighted_shape(load, load.shape.breakpoints)
             jumps = load.slope.jumps() / system.period
-            for at, jump in zip(load.shape.breakpoints, jumps, strict=True):
+            for at, shape, jump in zip(load.shape.breakpoints, shapes, jumps, strict=True):
                 panel = int(np.argmin(np.abs(self.edges[:-1] - at)))
-                found.append((panel, a, weighted_shape(load, at), jump))
+                found.append((panel, a, shape, jump))
         return found
 
     def transition_matrices(self, column: LoadColumn) -> FloatArray:

@@ -43,8 +43,8 @@ class Nodes:
         e^{Λ(t − t_middle)}: from the middle of a panel, so that neither they nor their inverses grow large.
     half : array of complex, shape (S, P, n)
         e^{Λh/2}.
-    reading : array of complex, shape (3, S, P, N, p, n)
-        z₀, z₁, z₂: what u, u̇ and ü of the free motion are made of.
+    reading : array of complex, shape (orders, S, P, N, p, n)
+        z₀, z₁, z₂, or as many of them as were asked for: what u, u̇ and ü of the free motion are made of.
     beta : array of complex, shape (S, P, N, p, n)
         Modal accelerations β by unit contact forces.
     direct : array, shape (S, P, N, p, p)
@@ -67,8 +67,12 @@ class Nodes:
         nodes: int,
         start: FloatArray,
         length: FloatArray,
+        orders: int = 3,
     ) -> Nodes:
-        """Evaluate everything on panels of given starts and lengths, fractions of the period (P,)."""
+        """Evaluate everything on panels of given starts and lengths, fractions of the period (P,).
+
+        Of u, u̇ and ü the first `orders` are read.
+        """
         x, _, _ = gauss_rule(nodes)
         periods = np.array([system.period for system in systems])
         systems_, count, p, n = len(systems), start.size, len(systems[0].loads), modes.size
@@ -94,16 +98,20 @@ class Nodes:
             factor = at_nodes(systems, _weight, fractions)
             weighted = phi * factor.reshape(len(factor), count * nodes * p, 1)
         velocity = modes.velocity
-        read = np.empty((3, *shape), dtype=complex)
-        read[0], read[1] = readings(phi, modes.displacement), readings(phi, velocity)
-        np.multiply(read[1], modes.eigenvalues[:, None, None, None, :], out=read[2])
+        read = np.empty((orders, *shape), dtype=complex)
+        read[0] = readings(phi, modes.displacement)
+        if orders > 1:
+            read[1] = readings(phi, velocity)
+        if orders > 2:
+            np.multiply(read[1], modes.eigenvalues[:, None, None, None, :], out=read[2])
         total = np.array([load.rate == "total" for load in systems[0].loads])
-        if total.any():
+        if orders > 1 and total.any():
             rate = total[:, None] / periods[:, None, None, None, None]
             slope = values(lambda load: load.slope)
             read[1] += rate * readings(slope, modes.displacement)
-            read[2] += 2.0 * rate * readings(slope, velocity)
-            read[2] += rate**2 * readings(values(lambda load: load.curvature), modes.displacement)
+            if orders > 2:
+                read[2] += 2.0 * rate * readings(slope, velocity)
+                read[2] += rate**2 * readings(values(lambda load: load.curvature), modes.displacement)
         inverse = np.linalg.inv(np.stack([system.mass for system in systems]))
         moved = (weighted @ inverse).reshape(systems_, count, nodes, p, n)
         return cls(
@@ -134,9 +142,9 @@ class ForcePanels:
 
     Attributes
     ----------
-    force_on_force : array, shape (3, S, P, N p, N p)
-        H₀, H₁, H₂ + D.
-    force_on_state : array, shape (3, S, P, N p, 2n)
+    force_on_force : array, shape (orders, S, P, N p, N p)
+        H₀, H₁, H₂ + D: all three for loads with mass, two for those with damping alone, else one.
+    force_on_state : array, shape (orders, S, P, N p, 2n)
         F₀, F₁, F₂, acting on (Re y, Im y).
     free : array, shape (S, P, 2n, 2n)
         E.
@@ -157,20 +165,22 @@ class ForcePanels:
         nodes: int,
         start: FloatArray,
         length: FloatArray,
+        orders: int = 3,
     ) -> ForcePanels:
         """Set up the equations on panels of given starts and lengths, fractions of the period (P,)."""
         _, weights, integration = gauss_rule(nodes)
-        at = Nodes.of(systems, modes, nodes, start, length)
+        at = Nodes.of(systems, modes, nodes, start, length, orders)
         systems_, count, p, n = len(systems), start.size, len(systems[0].loads), modes.size
-        rows = (at.reading * at.spread[:, :, :, None, :]).reshape(3, systems_, count, nodes * p, n)
+        rows = (at.reading * at.spread[:, :, :, None, :]).reshape(orders, systems_, count, nodes * p, n)
         # Backwards they are their own inverses.
         columns = (at.beta * at.spread[:, :, ::-1, None, :]).reshape(systems_, count, nodes * p, n)
         columns *= at.spans[:, :, None, None]
         # Re Σ z β as one product of real matrices, their columns (Re, Im) and (Re, −Im) in turn.
         force_on_force = rows.view(float) @ columns.conj().view(float).swapaxes(-1, -2)
         force_on_force *= np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
-        blocks = force_on_force[2].reshape(systems_, count, nodes, p, nodes, p)
-        blocks[:, :, np.arange(nodes), :, np.arange(nodes), :] += np.moveaxis(at.direct, 2, 0)
+        if orders > 2:
+            blocks = force_on_force[2].reshape(systems_, count, nodes, p, nodes, p)
+            blocks[:, :, np.arange(nodes), :, np.arange(nodes), :] += np.moveaxis(at.direct, 2, 0)
 
         push = columns * at.half[:, :, None, :] * np.repeat(weights, p)[:, None]
         decay = at.half**2

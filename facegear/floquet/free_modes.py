@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
 from facegear.floquet.loads import ContactLoad
 from facegear.floquet.modes import NaturalMotions
@@ -24,6 +26,8 @@ _SLOWEST = 1e-5
 # Condition of the modes beyond which the square of it, in units of rounding, is more than panels may lose: as just
 # below critical damping.
 _MOST_DEPENDENT = 300.0
+# Systems times the third power of their size from which on it pays to look for parts of them that are not coupled.
+_WORTH_PARTS = 20_000
 # A spring that holds what hangs on nothing lets it oscillate at this part of the fastest frequency at least.
 _SOFTEST = 0.1
 
@@ -77,29 +81,43 @@ class FreeModes:
         n = mass.shape[-1]
         if not stiffness.any(axis=(-1, -2)).all():
             raise UnsuitableSystemError("stiffness is zero: every free motion is a rigid-body motion")
-        motions = NaturalMotions.of(mass, damping, stiffness)
-        values = motions.exponents
-        oscillating = values.imag > _SLOWEST * np.abs(values).max(axis=-1, keepdims=True)
-        counts = np.count_nonzero(oscillating, axis=-1)
+        parts = (
+            _uncoupled(mass, damping, stiffness)
+            if mass.size * n >= _WORTH_PARTS
+            else [np.arange(n)[np.newaxis]]
+        )
+        motions = [
+            NaturalMotions.of(*(_part(x, places) for x in (mass, damping, stiffness))) for places in parts
+        ]
+        fastest = np.max([np.abs(found.exponents).max(axis=(-1, -2)) for found in motions], axis=0)
+        slowest = _SLOWEST * fastest[..., np.newaxis, np.newaxis]
+        oscillating = [found.exponents.imag > slowest for found in motions]
+        counts = np.sum([np.count_nonzero(those, axis=(-1, -2)) for those in oscillating], axis=0)
         if (counts != n).any():
             raise UnsuitableSystemError(
                 f"the free motion has {counts[counts != n].flat[0]} oscillating modes, not {n}: "
                 "some are rigid-body or overdamped"
             )
-        columns = motions.vectors.swapaxes(-1, -2)[oscillating].reshape(*mass.shape[:-2], n, 2 * n)
-        vectors = columns.swapaxes(-1, -2)
-        vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
-        basis = np.concatenate([vectors, vectors.conj()], axis=-1)
-        # x = Re(W y) with y twice the coefficients of the pairs W c + conj(W c).
-        rows = np.asarray(2.0 * _inverse(basis)[..., :n, :], dtype=complex)
-        half = replace(motions, exponents=values[oscillating].reshape(*mass.shape[:-2], n), vectors=vectors)
-        return cls(
-            eigenvalues=half.exponents,
-            displacement=half.displacements,
-            velocity=half.velocities,
-            coordinates=np.asarray(rows @ half.from_state, dtype=complex),
-            input=half.of_forces(rows),
-        )
+        return cls._joined([_of_pairs(*pair) for pair in zip(motions, oscillating, strict=True)], parts)
+
+    @classmethod
+    def _joined(cls, modes: Sequence[FreeModes], parts: Sequence[NDArray[np.intp]]) -> FreeModes:
+        """Modes of all coordinates from those of parts that are not coupled, mode by mode where its coordinate is."""
+        n = sum(places.size for places in parts)
+        leading = modes[0].eigenvalues.shape[:-2]
+        eigenvalues = np.zeros((*leading, n), dtype=complex)
+        displacement, velocity, of_forces = (np.zeros((*leading, n, n), dtype=complex) for _ in range(3))
+        coordinates = np.zeros((*leading, n, 2 * n), dtype=complex)
+        for found, places in zip(modes, parts, strict=True):
+            rows, columns = places[:, :, np.newaxis], places[:, np.newaxis]
+            both = np.concatenate([places, n + places], axis=-1)[:, np.newaxis]
+            eigenvalues[..., places] = found.eigenvalues
+            displacement[..., rows, columns], velocity[..., rows, columns] = (
+                found.displacement,
+                found.velocity,
+            )
+            coordinates[..., rows, both], of_forces[..., rows, columns] = found.coordinates, found.input
+        return cls(eigenvalues, displacement, velocity, coordinates, of_forces)
 
     @property
     def size(self) -> int:
@@ -114,6 +132,48 @@ class FreeModes:
     def real_from_state(self) -> FloatArray:
         """Matrix from (q, q̇) to (Re y, Im y), shape (..., 2n, 2n)."""
         return np.concatenate([self.coordinates.real, self.coordinates.imag], axis=-2)
+
+
+def _uncoupled(*matrices: FloatArray) -> list[NDArray[np.intp]]:
+    """Coordinates that matrices (..., n, n) couple, as parts of equal size, one array (parts, size) for each size."""
+    n = matrices[0].shape[-1]
+    there = np.any([(x != 0.0).reshape(-1, n, n).any(axis=0) for x in matrices], axis=0)
+    return _parts_of(n, there.tobytes())
+
+
+@lru_cache(maxsize=16)
+def _parts_of(n: int, coupled: bytes) -> list[NDArray[np.intp]]:
+    count, own = connected_components(np.frombuffer(coupled, dtype=bool).reshape(n, n), directed=False)
+    parts = [np.flatnonzero(own == number) for number in range(count)]
+    return [
+        np.stack([part for part in parts if part.size == size])
+        for size in sorted({part.size for part in parts})
+    ]
+
+
+def _part(matrix: FloatArray, places: NDArray[np.intp]) -> FloatArray:
+    """Blocks (..., parts, size, size) of a matrix (..., n, n)."""
+    return matrix[..., places[:, :, np.newaxis], places[:, np.newaxis]]
+
+
+def _of_pairs(motions: NaturalMotions, oscillating: NDArray[np.bool_]) -> FreeModes:
+    """Modes from motions that oscillate, of which every second one is chosen."""
+    n = motions.mass.shape[-1]
+    columns = motions.vectors.swapaxes(-1, -2)[oscillating].reshape(*motions.mass.shape[:-2], n, 2 * n)
+    vectors = columns.swapaxes(-1, -2)
+    vectors = vectors / np.linalg.norm(vectors[..., n:, :], axis=-2, keepdims=True)
+    basis = np.concatenate([vectors, vectors.conj()], axis=-1)
+    # x = Re(W y) with y twice the coefficients of the pairs W c + conj(W c).
+    rows = np.asarray(2.0 * _inverse(basis)[..., :n, :], dtype=complex)
+    chosen = motions.exponents[oscillating].reshape(*motions.mass.shape[:-2], n)
+    half = replace(motions, exponents=chosen, vectors=vectors)
+    return FreeModes(
+        eigenvalues=half.exponents,
+        displacement=half.displacements,
+        velocity=half.velocities,
+        coordinates=np.asarray(rows @ half.from_state, dtype=complex),
+        input=half.of_forces(rows),
+    )
 
 
 @lru_cache(maxsize=16)

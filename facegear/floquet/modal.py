@@ -29,6 +29,11 @@ from facegear.support.types import ComplexArray, FloatArray
 
 Kind = Literal["sum", "difference"]
 
+# Condition of the eigenvectors from which on they are no basis.
+_MOST_DEPENDENT = 1e8
+# Part of the largest eigenvalue of the mean stiffness below which one is nothing.
+_SINGULAR = 1e-12
+
 
 @dataclass(frozen=True, eq=False)
 class ModalExpansion:
@@ -236,21 +241,17 @@ def modal_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
     """
     order = integer_at_least("order", order, 1)
     mass, damping, stiffness = system.fourier(order)
-    full = np.linalg.eigvals(np.linalg.solve(mass.mean, stiffness.mean))
-    if np.abs(full).min() <= 1e-12 * np.abs(full).max():
-        raise ValueError(
-            f"system: the mean stiffness is singular (eigenvalues {np.abs(full).min():.3g} to "
-            f"{np.abs(full).max():.3g} (rad/s)²): a rigid-body mode has no natural frequency; restrain it or remove "
-            "its coordinate"
-        )
+    _refuse_singular(np.asarray(np.linalg.solve(mass.mean, stiffness.mean), dtype=float))
     motions = NaturalMotions.of(mass.mean, damping.mean, stiffness.mean)
     eigenvalues, oscillating = motions.exponents, motions.oscillating
-    condition = np.linalg.cond(motions.vectors)
-    if not condition < 1e8:
-        raise ValueError(
-            f"system: eigenvectors of the mean system are nearly dependent (condition {condition:.1g}), as at critical "
-            "damping; first-order averaging needs an eigenbasis"
-        )
+    amplitudes, bound = _inverse(motions.vectors)
+    if not bound < _MOST_DEPENDENT:
+        condition = np.linalg.cond(motions.vectors)
+        if not condition < _MOST_DEPENDENT:
+            raise ValueError(
+                "system: eigenvectors of the mean system are nearly dependent "
+                f"(condition {condition:.1g}), as at critical damping; first-order averaging needs an eigenbasis"
+            )
     largest = np.abs(eigenvalues).max()
     if oscillating.size == 0:
         raise ValueError(
@@ -258,7 +259,7 @@ def modal_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
         )
     values = eigenvalues[oscillating]
     displacements = motions.displacements[:, oscillating]
-    forces = motions.of_forces(motions.amplitudes[oscillating])
+    forces = motions.of_forces(amplitudes[oscillating])
     values, displacements, forces = (
         np.concatenate([part, part.conj()], axis=axis)
         for part, axis in ((values, 0), (displacements, 1), (forces, 0))
@@ -277,6 +278,29 @@ def modal_expansion(system: PeriodicSystem, order: int) -> ModalExpansion:
         mean_growth_rate=float(eigenvalues.real.max()),
         parametric_frequency=2 * np.pi / system.period,
     )
+
+
+def _refuse_singular(matrix: FloatArray) -> None:
+    """Refuse M⁻¹ K with an eigenvalue that is nothing beside the largest."""
+    # Norms bound both; eigenvalues are asked for only where that does not suffice.
+    if _inverse(matrix)[1] < 1.0 / _SINGULAR:
+        return
+    full = np.abs(np.linalg.eigvals(matrix))
+    if full.min() <= _SINGULAR * full.max():
+        raise ValueError(
+            f"system: the mean stiffness is singular (eigenvalues {full.min():.3g} to "
+            f"{full.max():.3g} (rad/s)²): a rigid-body mode has no natural frequency; restrain it or remove "
+            "its coordinate"
+        )
+
+
+def _inverse(matrix: FloatArray | ComplexArray) -> tuple[ComplexArray, float]:
+    """Inverse of a matrix, and a bound on its condition number by Frobenius norms: infinite where it has no inverse."""
+    try:
+        inverse = np.asarray(np.linalg.inv(matrix), dtype=complex)
+    except np.linalg.LinAlgError:
+        return np.zeros_like(matrix, dtype=complex), np.inf
+    return inverse, float(np.linalg.norm(matrix) * np.linalg.norm(inverse))
 
 
 def _harmonics(series: FourierSeries) -> ComplexArray:

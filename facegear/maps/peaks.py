@@ -10,13 +10,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
+from facegear.floquet.compiled import LANES
+from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.models import Model
-from facegear.floquet.multipliers import growth_rate
+from facegear.floquet.multipliers import Method, growth_rate, rounding_error, with_method
+from facegear.floquet.series import ChebyshevSeries
+from facegear.floquet.stepping import Family
+from facegear.maps.likeness import same_layout
+from facegear.support.types import FloatArray
 
 # Windows that are tried before a peak is given up.
 _MOST_WINDOWS = 60
+# Degree of the series of transition matrices in a window, and size of its last coefficients, relative to the largest
+# entry or 1, at which it is believed.
+_DEGREE, _TOLERANCE = 8, 1e-11
 
 
 Peak = Callable[[float], tuple[float, float]]
@@ -72,6 +82,39 @@ def largest_between(
     return float(found.x), -float(found.fun)
 
 
+def _peak_between(model: Model, low: float, high: float, resolution: float) -> tuple[float, float]:
+    """Speed between two close ones [rad/s] at which the growth rate is largest, and the growth rate there [1/s].
+
+    Transition matrices are computed together at a few values of the slowness 1/speed and interpolated, if they are as
+    smooth as that, else at each speed that is asked for.
+    """
+    slowness = ChebyshevSeries.points_of(1.0 / high, 1.0 / low, _DEGREE)
+    systems = [model.system(1.0 / x) for x in slowness.tolist()]
+
+    def interpolated(method: Method) -> ChebyshevSeries | None:
+        family = Family(systems)
+        series = ChebyshevSeries(1.0 / high, 1.0 / low, method.scaled_transition_matrices(family))
+        rounding = rounding_error(np.eye(len(family.scale)), family, method)
+        return series if series.tail <= max(_TOLERANCE, 4.0 * rounding) else None
+
+    alike = all(same_layout(systems[0], other) for other in systems[1:])
+    matrices = with_method(None, interpolated) if alike else None
+    if matrices is None:
+        return largest_between(lambda speed: growth_rate(model.system(speed)), low, high, resolution)
+    periods = ChebyshevSeries(1.0 / high, 1.0 / low, np.array([system.period for system in systems]))
+
+    def growth(speeds: FloatArray) -> FloatArray:
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(spectral_radii(matrices(1.0 / speeds))) / periods(1.0 / speeds))
+
+    speeds = np.linspace(low, high, LANES)
+    rates = growth(speeds)
+    best = int(rates.argmax())
+    first, last = speeds[[max(best - 1, 0), min(best + 1, LANES - 1)]].tolist()
+    found = largest_between(lambda speed: float(growth(np.array([speed]))[0]), first, last, resolution)
+    return max(found, (float(speeds[best]), float(rates[best])), key=lambda peak: peak[1])
+
+
 def growth_peak(
     model: Model,
     guess: float,
@@ -107,22 +150,18 @@ def growth_peak(
     ArithmeticError
         If the peak always lies at an end of its window.
     """
-
-    def growth(speed: float) -> float:
-        return growth_rate(model.system(speed))
-
     lowest, highest = speeds
     centre, width = min(max(guess, lowest), highest), window
     for _ in range(_MOST_WINDOWS):
         low, high = max(centre * (1 - width), lowest), min(centre * (1 + width), highest)
-        best, value = largest_between(growth, low, high, resolution * centre)
+        best, value = _peak_between(model, low, high, resolution * centre)
         margin = 0.02 * (high - low)
         ends = [end for end in (low, high) if abs(best - end) < margin]
         if not ends:
             return best, value
         (end,) = ends
         if end in speeds:
-            at_end = growth(end)
+            at_end = growth_rate(model.system(end))
             return (end, at_end) if at_end >= value else (best, value)
         centre, width = best, min(2 * width, widest)
     raise ArithmeticError(f"no largest growth rate near {guess:.6g} rad/s: the instability was lost")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Literal
 
@@ -41,6 +41,8 @@ _FOLLOWS = {"follower": 1.0, "dead": 0.0}
 # K_f as a series in the square of the speed, from 0 to this speed [rad/s] or 2, 4, 8 ... times it.
 _LOWEST_TOP = 128.0
 _SERIES_DEGREE = 8
+# Ratio h/a of the body of which it is kept.
+_STANDARD = 0.125
 # Mean shear stress at the bore over Young's modulus that a driving force may have: steel breaks at a thousandth.
 _MOST_SHEAR = 100.0
 
@@ -214,9 +216,15 @@ def unit_stiffness(
     speed = within("speed", speed, 0.0, limit, "rad/s", hint="rpm?")
     octave = max(0, math.ceil(math.log2(speed / _LOWEST_TOP))) if speed > 0.0 else 0
     top = min(_LOWEST_TOP * 2**octave, limit)
-    dead, added = _stiffness_series(body, top, harmonics, angles, spread)((speed / top) ** 2)
-    found: FloatArray = dead + _FOLLOWS[following] * added
+    dead, added = _stiffness_series(_standard(body), top, harmonics, angles, spread)((speed / top) ** 2)
+    found: FloatArray = (_STANDARD / body.thickness_ratio) * (dead + _FOLLOWS[following] * added)
     return found
+
+
+@lru_cache(maxsize=256)
+def _standard(body: Body) -> Body:
+    """Return a body with the same field in its plane but for a factor, in inverse proportion to its thickness."""
+    return replace(body, thickness_ratio=_STANDARD)
 
 
 @lru_cache(maxsize=256)
