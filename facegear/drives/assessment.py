@@ -121,7 +121,7 @@ class Assessment:
         ]
         found += dict.fromkeys(turned + [SPEED_TURNS] * (nominal[TORSION] and bool(own)))
         if len({bool(self._operating(tongues)) for tongues in self.torsion.values()}) == 2:
-            found.append("contact or arm of the mesh force in torsion")
+            found.append("the contact or the arm of the mesh force in torsion")
         if self.failed:
             found.append("models that could not be computed")
         return tuple(found)
@@ -170,7 +170,7 @@ class Assessment:
         else:
             words = f"Depends on {listed(self.decides)}: {where} {are} stable at all speeds."
         words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
-        values = ", the values of its tolerances that were looked at included" if self.worst else ""
+        values = ", and the file's own within its tolerances" if self.worst else ""
         words += f" Speeds at which every model is known to be stable{values}: {told(self.always_stable)}."
         families = (
             "all models of the disk's motion, or all of torsion, are" if self.torsion else "all models are"

@@ -97,7 +97,7 @@ def _models(found: Assessment) -> Section:
             (float(rpm(low)), float(rpm(high))),
         ),
         "Stable and unstable speeds under every model, the file's own contact and teeth first. The last strip: "
-        "stable under all (values of the tolerances that were looked at included), unstable under all of the disk's "
+        "stable under all (the file's own one within its tolerances), unstable under all of the disk's "
         "motion or all of torsion, or depending on the model.",
         "Horizontal strips over speed, one for each model, green with red intervals; a last one in three colours",
     )
@@ -154,7 +154,8 @@ def _tolerances(found: Assessment) -> Section:
         f"to {100 * (FINE - 1):.3g} % of the stiffness, and there it is looked for with {MOST:g} times the damping. "
         "Speeds at which something stands even so, or at which two resonances meet, or for which the work allowed was "
         "not enough, are not known. Stable are those at which nothing stands: a resonance whose strength doubles "
-        "within a part of a step would still be missed. Between the values something may also grow faster than at any."
+        "within a part of a step would still be missed. Where the contact ratio depends on the load, values are as "
+        "close together as its change asks for. Between the values something may also grow faster than at any."
     )
     return Section(title, (words, Listing(found.over_tolerances), *tables))
 

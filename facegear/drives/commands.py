@@ -75,14 +75,19 @@ def assess_drive(options: argparse.Namespace) -> int:
 
 def _require_folder(folder: Path) -> None:
     """Refuse a place that results cannot be written to before they are computed."""
+    if reason := _not_writable(folder):
+        raise UsageError(f"--output must be a folder that can be written to, got {str(folder)!r}: {reason}")
+
+
+def _not_writable(folder: Path) -> str:
+    """Say why nothing can be written into a folder, which need not be there yet; nothing if it can."""
     there = next(place for place in (folder.absolute(), *folder.absolute().parents) if place.exists())
     try:
         # Permissions do not tell: some file systems take no folder from anybody.
         tempfile.TemporaryDirectory(prefix=".", dir=there).cleanup()
     except OSError as problem:
-        raise UsageError(
-            f"--output must be a folder that can be written to, got {str(folder)!r}: {problem.strerror}"
-        ) from None
+        return problem.strerror or str(problem)
+    return ""
 
 
 def check(options: argparse.Namespace) -> int:
@@ -114,6 +119,8 @@ def stability_map(options: argparse.Namespace) -> int:
     for path in outputs:
         if path.suffix not in WRITERS:
             raise UsageError(f"--output must end in {', '.join(WRITERS)}, got {str(path)!r}")
+        if reason := _not_writable(path.parent):
+            raise UsageError(f"--output must be a file that can be written, got {str(path)!r}: {reason}")
     try:
         found = sweep(
             file,

@@ -119,7 +119,7 @@ def _outcome(case: WorstCase) -> str:
         return f"not known ({case.unknown})"
     looked = f"the {len(case.points)} values looked at"
     if case.is_stable:
-        return f"stable at {looked}, and nothing near them is so strong that it could come between"
+        return f"stable at {looked}, and between them as far as the search under Tolerances tells"
     left = tuple(part for gap in gaps(case.swept, case.speeds) for part in cut(case.possible, gap))
     free = gaps(case.possible, case.speeds)
     rest = f"; not known at {told(left)}, where something may be unstable between {looked}" if left else ""

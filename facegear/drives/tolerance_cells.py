@@ -18,11 +18,14 @@ from itertools import combinations, count, product
 from typing import Any
 
 from facegear.drives.intervals import cut, gaps, united
-from facegear.floquet.models import Model
 from facegear.maps.tracing import Tongue, search_seconds, tongues
 
 # Ratio of the largest and the smallest stiffness of a cell above which it is halved in any case.
 _COARSE = 1.25
+# Change of the contact ratio c above which a cell is halved in any case: that of a contact under load depends on the
+# teeth, and harmonics of what comes and goes with a pair go like sin nπc. Between places so close together even the
+# one with n = 13 is at most twice as strong as at the nearer of them, or nowhere strong.
+_SAME_RATIO = 0.05
 FINE = 1.025
 """Ratio of the largest and the smallest stiffness of a cell that is not halved any more."""
 
@@ -58,13 +61,7 @@ class Cell:
 
     @property
     def _ratio(self) -> float:
-        return max(high / low for low, high in zip(self.lower, self.upper, strict=True))
-
-    @property
-    def is_coarse(self) -> bool:
-        """Whether it has to be halved: too large, or with the values of the file inside."""
-        inside = any(low < 1.0 < high for low, high in zip(self.lower, self.upper, strict=True))
-        return inside or self._ratio > _COARSE
+        return max(high / low for low, high in self.edges)
 
     @property
     def is_fine(self) -> bool:
@@ -80,16 +77,24 @@ class Cell:
     @property
     def corners(self) -> list[Factors]:
         """Factors at the corners."""
-        return list(product(*(sorted({*ends}) for ends in zip(self.lower, self.upper, strict=True))))
+        return list(product(*(sorted({*ends}) for ends in self.edges)))
 
-    def halves(self) -> tuple[Cell, Cell]:
-        """Both halves along the longest edge: at the value of the file, where that is inside."""
-        ends = list(zip(self.lower, self.upper, strict=True))
-        longest = max(range(len(ends)), key=lambda place: ends[place][1] / ends[place][0])
-        low, high = ends[longest]
+    @property
+    def edges(self) -> list[Range]:
+        """Lower and upper factor of each stiffness."""
+        return list(zip(self.lower, self.upper, strict=True))
+
+    @property
+    def longest(self) -> int:
+        """Number of the edge with the largest ratio."""
+        return max(range(len(self.edges)), key=lambda place: self.edges[place][1] / self.edges[place][0])
+
+    def halves(self, place: int) -> tuple[Cell, Cell]:
+        """Both halves along an edge: at the value of the file, where that is inside."""
+        low, high = self.edges[place]
         middle = 1.0 if low < 1.0 < high else math.sqrt(low * high)
         upper, lower = (
-            tuple(middle if place == longest else value for place, value in enumerate(corner))
+            tuple(middle if number == place else value for number, value in enumerate(corner))
             for corner in (self.upper, self.lower)
         )
         return replace(self, upper=upper), replace(self, lower=lower)
@@ -134,7 +139,7 @@ class BoxSearch:
     Parameters
     ----------
     model : Model
-        With a field NAME_factor for each part.
+        With a field NAME_factor for each part, and a `contact_ratio`.
     parts : mapping of str to float
         How far each may be from 1 to both sides, by its name in words, which ends in "stiffness" or "damping".
     wide : tuple of float
@@ -164,10 +169,7 @@ class BoxSearch:
         own = self.points[nominal] = self._tongues(nominal, self.wide)
         self.swept += [(tongue.lower, tongue.upper) for tongue in own]
         self.possible += self.swept
-        cells = [Cell(*self._ends(is_stiffness), self.wide)]
-        while any(cell.is_coarse for cell in cells):
-            cells = [part for cell in cells for part in (cell.halves() if cell.is_coarse else (cell,))]
-        finer = [half for cell in cells for half in self._halves(cell)]
+        finer = [half for cell in self._cells() for half in self._halves(cell)]
         self._seconds = 0.0
         # The largest first: what is left at the end is small.
         number = count()
@@ -178,6 +180,39 @@ class BoxSearch:
             for half in () if self._is_known(cell) else self._halves(cell):
                 heapq.heappush(queue, (-half.reach, next(number), half))
         self.possible += [cell.speeds for *_, cell in queue]
+
+    def _cells(self) -> list[Cell]:
+        """Divide the box into cells that are as large as may be."""
+        cells, left = [], [Cell(*self._ends(is_stiffness), self.wide)]
+        while left:
+            cell = left.pop()
+            if (place := self._too_long(cell)) is None:
+                cells.append(cell)
+            else:
+                left += cell.halves(place)
+        return cells
+
+    def _too_long(self, cell: Cell) -> int | None:
+        """Tell which edge of a cell is too long: by its ratio, with the file's value inside, or by what it changes."""
+        for place, (low, high) in enumerate(cell.edges):
+            if low < 1.0 < high:
+                return place
+        low, high = cell.edges[cell.longest]
+        if high / low > _COARSE:
+            return cell.longest
+        if cell.is_fine:
+            return None
+        ratio = self._contact_ratio(cell.lower)
+        for place, (_, high) in enumerate(cell.edges):
+            there = (*cell.lower[:place], high, *cell.lower[place + 1 :])
+            if abs(self._contact_ratio(there) - ratio) > _SAME_RATIO:
+                return place
+        return None
+
+    def _contact_ratio(self, springs: Factors) -> float:
+        """Mesh periods that a tooth pair stays in mesh, at some factors of stiffness."""
+        low, _ = self._ends(is_damping)
+        return float(self.at(self._factors(springs, low)).contact_ratio)
 
     def _is_known(self, cell: Cell) -> bool:
         """Whether all speeds of a cell are swept, and it is known how fast something grows at some of them."""
@@ -195,7 +230,7 @@ class BoxSearch:
             self.possible += [*judged.open, *self._left(cell, corners)]
             return []
         unsettled = cut(united([*judged.open, *judged.weak]), cell.speeds)
-        return [half for speeds in unsettled for half in replace(cell, speeds=speeds).halves()]
+        return [half for speeds in unsettled for half in replace(cell, speeds=speeds).halves(cell.longest)]
 
     def _left(self, cell: Cell, corners: Sequence[_Corner]) -> list[Range]:
         """Where something may open inside a fine cell that stands at no corner of it."""
@@ -262,11 +297,10 @@ class BoxSearch:
         of_springs, of_dampers = iter(springs), iter(dampers)
         return tuple(next(of_springs if is_stiffness(words) else of_dampers) for words in self.parts)
 
-    def at(self, factors: Factors) -> Model:
+    def at(self, factors: Factors) -> Any:
         """Return the model with some factors."""
         names = (f"{words.replace(' ', '_')}_factor" for words in self.parts)
-        changed: Model = replace(self.model, **dict(zip(names, factors, strict=True)))
-        return changed
+        return replace(self.model, **dict(zip(names, factors, strict=True)))
 
     def _tongues(self, factors: Factors, around: Range) -> tuple[Tongue, ...]:
         """Trace tongues of one value; one of many may have two multipliers so close that they are known less well."""

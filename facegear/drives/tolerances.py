@@ -153,6 +153,11 @@ class Toleranced:
         return self.model.with_gear(gear)
 
     @property
+    def contact_ratio(self) -> float:
+        """That of the drive, which under load changes with its teeth."""
+        return self.changed.gear.contact_ratio
+
+    @property
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Those of the drive."""
         return self.model.coordinates
@@ -206,6 +211,11 @@ class TolerancedGearbox:
         changed = replace_at(self.torsional, (*inside, "gearbox"), gearbox)
         contact = _with_stiffer_teeth(massless(changed).contact, self.mesh_stiffness_factor)
         return replace_at(changed, (*inside, "contact"), contact)
+
+    @property
+    def contact_ratio(self) -> float:
+        """That of the gearbox, which under load changes with its teeth."""
+        return float(massless(self.changed).contact_ratio)
 
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:

@@ -93,7 +93,7 @@ def in_words(response: xr.Dataset, static: float) -> str:
     return (
         f"In torsion, at {count} of {response.sizes['speed']} speeds where it is stable, and as long as flanks do not "
         f"part, a tooth pair bears up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / static:.3g} times the "
-        f"whole static force of {static:.4g} N. At {part.speeds} of these {count} speeds flanks would part{between}."
+        f"whole static force of {static:.4g} N. Flanks would part at {part.speeds} of these {count} speeds{between}."
         f"{AT_BORDERS if rises else ''}"
     )
 

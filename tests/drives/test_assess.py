@@ -97,7 +97,10 @@ class TestVerdict:
         assert "unstable: 600 to 620 rpm" in found.headline
         torsion["true sweep, arm as printed"] = ()
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=torsion)
-        assert (found.verdict, found.decides) == ("depends", ("contact or arm of the mesh force in torsion",))
+        assert (found.verdict, found.decides) == (
+            "depends",
+            ("the contact or the arm of the mesh force in torsion",),
+        )
 
     def test_tolerances_turn_a_stable_drive(self):
         swept = ((float(rad_per_s(200.0)), float(rad_per_s(290.0))),)

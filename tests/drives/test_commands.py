@@ -181,6 +181,10 @@ def test_a_map_in_three_kinds_of_files(here, capsys):
             "with module_mm = 0.2 mm: body.bore_radius_mm must lie in [",
         ),
         ("--output map.xls", "--output must end in .nc, .csv, .svg, .png, .pdf, got 'map.xls'"),
+        (
+            "--output my.yaml/map.csv",
+            "--output must be a file that can be written, got 'my.yaml/map.csv': Not a dir",
+        ),
         ("--contact loaded", "contact must be tregold or geometric"),
     ],
 )

@@ -28,6 +28,8 @@ class Tuned:
     stiffness_factor: float = 1.0
     damping_factor: float = 1.0
 
+    contact_ratio = 1.5
+
     def system(self, frequency):
         away = (self.stiffness_factor - self.tuned_at) / self.width
         # Damping keeps its value in N s/m.
@@ -92,6 +94,34 @@ def test_what_work_does_not_reach_is_left_open(monkeypatch):
     assert {f for f, _ in search.points} == {0.9, 1.0, 1.1}
 
 
+@dataclass(frozen=True)
+class UnderLoad(Tuned):
+    """Strength like that of the fourth harmonic of a pair that stays in mesh for 5.5 periods, longer if softer."""
+
+    @property
+    def contact_ratio(self):
+        return 5.5 - 1.24 * (self.stiffness_factor - 1.0)
+
+    def system(self, frequency):
+        strength = self.peak * OPENS * abs(math.sin(4.0 * math.pi * self.contact_ratio))
+        ratio = DAMPING_RATIO * self.damping_factor / math.sqrt(self.stiffness_factor)
+        return Mathieu(strength, ratio, math.sqrt(self.stiffness_factor)).system(frequency)
+
+
+def test_a_contact_ratio_that_changes_with_the_teeth_hides_no_harmonic():
+    """It vanishes near both ends of the range and at the values of the file, and stands between."""
+    speeds = (1.85, 2.15)
+    assert all(tongues(UnderLoad(1.1, stiffness_factor=factor), speeds) for factor in (0.9, 1.1))
+    for factor in (0.8, 1.0, 1.2):
+        half = UnderLoad(1.1, stiffness_factor=factor, damping_factor=0.5)
+        assert not tongues(half, (1.7, 2.3))
+    _, swept, possible = searched(UnderLoad(1.1), stiffness=0.2, speeds=speeds)
+    assert swept
+    for factor in np.linspace(0.8, 1.2, 41).tolist():
+        for tongue in tongues(UnderLoad(1.1, stiffness_factor=factor), speeds):
+            assert any(low <= tongue.lower and tongue.upper <= high for low, high in possible)
+
+
 def test_two_that_are_weak_alone_and_meet_inside_a_fine_cell_are_left_open():
     """Their strengths may add where they share a mode; apart, both are far from open."""
     cell = Cell((1.0,), (1.02,), (1.0, 2.0))
@@ -120,7 +150,7 @@ def corner(*weak):
 @pytest.mark.parametrize("part", [0.1, 0.4])
 def test_cells_are_halved_at_the_values_of_the_file_first(part):
     cell = Cell((1.0 - part, 0.95), (1.0 + part, 1.05), RANGE)
-    lower, upper = cell.halves()
+    lower, upper = cell.halves(cell.longest)
     assert (lower.lower, lower.upper) == ((1.0 - part, 0.95), (1.0, 1.05))
     assert (upper.lower, upper.upper) == ((1.0, 0.95), (1.0 + part, 1.05))
     assert cell.reach == pytest.approx(math.sqrt((1.0 + part) / (1.0 - part)), rel=1e-15)
