@@ -30,6 +30,8 @@ from facegear.support.types import FloatArray
 # like a root, and lightly damped modes bend the growth rate within some 1e-5 of the speed; errors of growth rates are
 # the same on both sides but for rounding. Models hold values for the same that are several times closer.
 _STEP = 1e-6
+# The same around a peak, in widths of the tongue: a parabola through three such points is as good as rounding lets it.
+_OF_WIDTH = 3e-4
 FOLLOWED = 0.10
 """Size of the changes that are made in earnest."""
 
@@ -144,6 +146,7 @@ def slopes_of_tongues(
         [None if border in speeds else _by_speed(model, border) for border in (each.lower, each.upper)]
         for each in found
     ]
+    peaks = [_peak(model, tongue, speeds) for tongue in found]
     slopes = np.full((len(changes), len(found), 3), np.nan)
     for row, change in zip(slopes, changes, strict=True):
         sides = _sides(model, change)
@@ -153,8 +156,23 @@ def slopes_of_tongues(
             for end, border in enumerate((tongue.lower, tongue.upper)):
                 slope = steep[place][end]
                 row[place, end] = 0.0 if slope is None else -_by_change(sides, border) / slope
-            row[place, 2] = _by_change(sides, tongue.peak)
+            row[place, 2] = _by_change(sides, peaks[place])
     return slopes
+
+
+def _peak(model: Model, tongue: Tongue, speeds: tuple[float, float]) -> float:
+    """Speed of the largest growth rate, to more digits than a search for it gives.
+
+    Where the peak moves the growth at a constant speed changes most just beside it, and much more than the peak.
+    """
+    step = min(_STEP * tongue.peak, _OF_WIDTH * tongue.width)
+    if min(tongue.peak - speeds[0], speeds[1] - tongue.peak) <= step:
+        return tongue.peak
+    below, here, above = (growth_rate(model.system(tongue.peak + k * step)) for k in (-1.0, 0.0, 1.0))
+    bend = below - 2.0 * here + above
+    further = 0.0 if bend >= 0.0 else 0.5 * (below - above) / bend
+    # At a kink, where another motion grows faster, there is no vertex nearby.
+    return tongue.peak + step * further if abs(further) < 1.0 else tongue.peak
 
 
 def _by_change(sides: list[tuple[float, Any]], speed: float) -> float:

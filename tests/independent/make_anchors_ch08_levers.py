@@ -74,6 +74,16 @@ def border(model, near_rpm):
     return brentq(lambda speed: growth(model, speed), near_rpm * (1 - 2e-5), near_rpm * (1 + 2e-5), xtol=1e-8)
 
 
+def peak_of(rate, near_rpm, width_rpm):
+    """Speed [rpm] of the largest growth: the package's is too coarse for slopes of what moves along with the speed."""
+    step = 1e-3 * width_rpm
+    for _ in range(2):
+        below, here, above = (rate(near_rpm + k * step) for k in (-1.0, 0.0, 1.0))
+        near_rpm += 0.5 * step * (below - above) / (below - 2.0 * here + above)
+        step /= 3.0
+    return near_rpm
+
+
 def whole(model, low=LOWEST):
     """Tongues as the chapter lists them."""
     ends = [float(fg.rad_per_s(limit)) for limit in (low, HIGHEST)]
@@ -104,6 +114,7 @@ def slopes(model, tongue, place, name, first=0):
     at = {"tongue": first + place, "change": column}
     yield anchor("centre_change", sum(ends) / (lower + upper), 2e-5, **at)
     yield anchor("width_change", (ends[1] - ends[0]) / (upper - lower), 5e-4, **at)
+    peak = peak_of(lambda speed: growth(model, speed), peak, upper - lower)
     yield anchor("growth_change", by_change(peak) / growth(model, peak), 1e-4, **at)
 
 
@@ -219,6 +230,12 @@ def gearbox():
                 at = {"tongue": first + place, "change": FIELDS.index(field)}
                 yield anchor("centre_change", sum(ends) / (lower + upper), 1e-4, **at)
                 yield anchor("width_change", (ends[1] - ends[0]) / (upper - lower), 5e-4, **at)
+
+                # The growth in a period has its peak elsewhere.
+                def rate(speed, numbers=numbers):
+                    return torsion.log_radius(numbers, speed) * speed
+
+                peak = peak_of(rate, peak, upper - lower)
                 yield anchor("growth_change", by_change(peak) / torsion.log_radius(numbers, peak), 1e-4, **at)
         first += len(found)
 
