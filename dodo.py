@@ -296,6 +296,7 @@ def task_book() -> dict:
             ROOT / "tools" / "pages.py",
             ROOT / "tools" / "public_names.py",
             ROOT / "tools" / "figure_letters.py",
+            ROOT / "tools" / "unbroken.py",
             ROOT / "CITATION.cff",
             ROOT / "_config.yml",
             ROOT / "uv.lock",

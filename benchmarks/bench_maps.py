@@ -36,7 +36,8 @@ from benchmarks.synthetic_disk import (
     synthetic_shafts,
 )
 from facegear.floquet.columns import column_spectral_radii, family_spectral_radii
-from facegear.floquet.multipliers import AdaptiveMagnus, Stepwise, multipliers, transition_matrix
+from facegear.floquet.methods import AdaptiveMagnus, Stepwise
+from facegear.floquet.multipliers import multipliers, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.stepping import aligned_edges

@@ -33,8 +33,9 @@ from benchmarks.bench_maps import (
 from benchmarks.record import write_record
 from benchmarks.synthetic_disk import Array
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.methods import AdaptiveMagnus
 from facegear.floquet.models import replace_parameter
-from facegear.floquet.multipliers import AdaptiveMagnus, multipliers
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.stability_map import stability_map
 from facegear.mechanics.classical import Mathieu

@@ -2,13 +2,13 @@ from .design.body import critical_thickness as critical_thickness
 from .drives.assess import assess as assess
 from .drives.drive_file import read_drive_file as read_drive_file
 from .drives.drive_text import write_drive_file as write_drive_file
+from .floquet.error_estimates import error_estimate as error_estimate
 from .floquet.hsu import resonance_bands as resonance_bands
 from .floquet.loads import ContactLoad as ContactLoad
 from .floquet.loads import StateJump as StateJump
 from .floquet.models import replace_parameter as replace_parameter
 from .floquet.modified_models import Excited as Excited
 from .floquet.modified_models import WithoutRigidMotion as WithoutRigidMotion
-from .floquet.multipliers import error_estimate as error_estimate
 from .floquet.multipliers import growth_rate as growth_rate
 from .floquet.multipliers import multipliers as multipliers
 from .floquet.multipliers import transition_matrix as transition_matrix

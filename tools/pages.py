@@ -4,7 +4,7 @@
 """
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -94,10 +94,12 @@ def offer_numbers(cell: nbformat.NotebookNode, stored: Collection[str]) -> None:
         figure["caption"] += f" Numbers: {', '.join(links)}."
 
 
-# Code, fenced or not, and formulas: what is not running text. And numbers as computers write them.
-NOT_TEXT = re.compile(r"(```.*?```|`[^`\n]*`|\$\$.*?\$\$|\$[^$\n]*\$)", re.DOTALL)
+# Code, fenced or not, formulas and tags: what is not running text. And numbers as computers write them.
+NOT_TEXT = re.compile(r"(```.*?```|`[^`\n]*`|\$\$.*?\$\$|\$[^$\n]*\$|</?[a-z][^>\n]*>)", re.DOTALL)
 WITH_EXPONENT = re.compile(r"(?<![\w.])([-+−]?\d+(?:\.\d+)?)[eE]([-+]?\d+)(?![\w])")
 MINUS_ZERO = re.compile(r"(?<![\w.)])[-−](0(?:\.0+)?)(?![\d.\w])")
+# A hyphen before a number is a minus; one between two numbers is not, unless the second is an imaginary part.
+HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]}-])-(?=\d)|(?<=\d)-(?=[\d.]+i\b)")
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -114,28 +116,47 @@ def _power_of_ten(number: re.Match[str], formula: bool) -> str:
     return f"{sign}{size}{times}{power}"
 
 
-def in_readers_digits(text: str) -> str:
-    """Write the numbers in a text as a reader does: 1.6·10⁻⁶ for 1.6e-06, 10470 for 1.047e+04, 0.00 for −0.00.
-
-    Code stays as it is; in a formula a power of ten is one of TeX.
-    """
-    parts = NOT_TEXT.split(text)
+def _in_running_text(text: str, change: Callable[[str, bool], str]) -> str:
+    """Change what is running text or a formula, by a function that is told which; code and tags stay."""
+    parts = NOT_TEXT.split(text)  # every second one is what the pattern has found
     for place, part in enumerate(parts):
-        if part.startswith("`"):
-            continue
-        formula = part.startswith("$")
-        part = WITH_EXPONENT.sub(lambda number, formula=formula: _power_of_ten(number, formula), part)
-        parts[place] = part if formula else MINUS_ZERO.sub(r"\1", part)
+        if place % 2 == 0 or part.startswith("$"):
+            parts[place] = change(part, place % 2 == 1)
     return "".join(parts)
 
 
+def _with_powers(part: str, formula: bool) -> str:
+    return WITH_EXPONENT.sub(lambda number: _power_of_ten(number, formula), part)
+
+
+def with_powers_of_ten(text: str) -> str:
+    """Write 1.6·10⁻⁶ for 1.6e-06 and 10470 for 1.047e+04; in a formula, a power of ten of TeX; not in code."""
+    return _in_running_text(text, _with_powers)
+
+
+def in_readers_digits(text: str) -> str:
+    """Write the numbers in a text as a reader does: with powers of ten, 0.00 for −0.00, and −2 for -2."""
+
+    def change(part: str, formula: bool) -> str:
+        part = _with_powers(part, formula)
+        return part if formula else HYPHEN_FOR_MINUS.sub("−", MINUS_ZERO.sub(r"\1", part))
+
+    return _in_running_text(text, change)
+
+
+# The hyphen at the beginning of a cell of a table of HTML.
+HYPHEN_IN_CELL = re.compile(r"(<td[^>]*>)-(?=\d)")
+
+
 def put_outputs_in_readers_digits(cell: nbformat.NotebookNode) -> None:
-    """Do that to what a cell shows as text of the page or leaves to be quoted there."""
+    """Do that to what a cell shows as text of the page or leaves to be quoted there; in tables of HTML a minus."""
     for output in cell.get("outputs", []):
         data = output.get("data", {})
         for kind in ("text/markdown", "application/papermill.record/text/plain"):
             if kind in data:
                 data[kind] = in_readers_digits(data[kind])
+        if "text/html" in data:
+            data["text/html"] = HYPHEN_IN_CELL.sub(r"\1−", data["text/html"])
 
 
 def counterparts(printed: PrintedFigure, figures: Iterable[BookFigure]) -> list[BookFigure]:
@@ -181,7 +202,8 @@ def figure_index(contents: Path, notebooks: Sequence[Path]) -> str:
         found = counterparts(printed, figures)
         shown += printed.data and bool(found)
         here = ", ".join(f"{{numref}}`{figure.label}`" for figure in found)
-        here = here or printed.not_drawn or "its chapter is not in the book yet"
+        reason = printed.not_drawn[:1].lower() + printed.not_drawn[1:]
+        here = here or (f"not drawn: {reason}" if reason else "its chapter is not in the book yet")
         if not found and not printed.not_drawn and printed.chapter in present:
             missing.append(printed.number)
         chapter = rows.setdefault(printed.chapter, [])

@@ -86,7 +86,8 @@ def assess(
     Raises
     ------
     TypeError, ValueError, ArithmeticError
-        As :func:`facegear.drives.basis.settled_tongues`; models that the drive does not allow are left out and named.
+        As :func:`facegear.drives.basis.settled_tongues` where no model can be computed; otherwise models that cannot,
+        or that the drive does not allow, are left out and named.
 
     Examples
     --------
@@ -139,12 +140,9 @@ class _Found:
         """Look for the first verdict here while the second case is at work, then let all cases and torsion follow."""
         # No more beside it, or what somebody waits for would take longer.
         self._add_case(crew, 1, self.cases[1])
-        first = tongues(self.cases[0].model, self.speeds, progress=False)
-        share = 100 * unstable_share(first, self.speeds)
-        self.say(
-            f"the drive as its file has it, in the basis of the file: unstable at {share:.3g} % of the speeds"
-        )
-        self._add_case(crew, 0, self.cases[0], first)
+        known, words = self._first()
+        self.say(f"the drive as its file has it, in the basis of the file: {words}")
+        self._add_case(crew, 0, self.cases[0], *known)
         for number, case in enumerate(self.cases[2:], 2):
             self._add_case(crew, number, case)
         for name, work in self.torsion.items():
@@ -154,9 +152,17 @@ class _Found:
             if self.file.tolerances.given_in_torsion:
                 self._add_worst(crew, TORSION, worst_case_in_torsion, torsional)
 
+    def _first(self) -> tuple[tuple[Sequence[Tongue], ...], str]:
+        """Tongues of the file's own model, if they can be computed, and the first verdict in words."""
+        try:
+            found = tongues(self.cases[0].model, self.speeds, progress=False)
+        except ArithmeticError as error:
+            return (), f"it could not be computed ({told(error)})"
+        return (found,), f"unstable at {100 * unstable_share(found, self.speeds):.3g} % of the speeds"
+
     def _add_case(self, crew: Crew, number: int, case: Variant, *known: Sequence[Tongue]) -> None:
         work = (case.model, *self.settings, self.most_steps, *known)
-        crew.add(("case", number), _CASES_FIRST, _settled, *work)
+        crew.add(("case", number), _CASES_FIRST, _tried, *work)
 
     def _add_worst(self, crew: Crew, name: str, find: Callable[..., WorstCase], model: Any) -> None:
         size = float(len(model.coordinates))
@@ -172,29 +178,33 @@ class _Found:
         else:
             self.found[kind, which] = result
 
-    def _take_case(self, crew: Crew, number: int, found: SettledTongues) -> None:
-        case = replace(self.cases[number], model=found.model)
-        self._keep(crew, (number, 0), Outcome(case, found.tongues, found.settled))
-        # Where two bases agree for the file's teeth, the smaller is where the others begin.
-        start = found.steps[-2:][0]
-        own = replace(case, model=with_basis(case.model, start.nodal_circles, start.nodal_diameters))
-        variants, self.refused[number, 0], self.failed[number, 0] = other_teeth(
-            self.file, own, self.contacts[case.contact]
+    def _take_case(self, crew: Crew, number: int, tried: _Tried) -> None:
+        case, failed, start = self.cases[number], [], self.cases[number].model
+        if (found := tried.found) is None:
+            failed, words = [f"{case.name}: {tried.reason}"], "could not be computed"
+        else:
+            self._keep(
+                crew, (number, 0), Outcome(replace(case, model=found.model), found.tongues, found.settled)
+            )
+            # Where two bases agree for the file's teeth, the smaller is where the others begin.
+            last = found.steps[-2:][0]
+            start = with_basis(case.model, last.nodal_circles, last.nodal_diameters)
+            words = f"unstable at {100 * found.unstable_share:.3g} % of the speeds"
+            # Those of the file's own contact and teeth.
+            if number < len(FORCES) and self.file.tolerances.given:
+                self._add_worst(crew, case.force, worst_case, found.model)
+        variants, self.refused[number, 0], others = other_teeth(
+            self.file, replace(case, model=start), self.contacts[case.contact]
         )
+        self.failed[number, 0] = failed + others
         bases = min(_MORE_BASES, self.most_steps)
         for place, variant in enumerate(variants, 1):
             self.others[number, place] = variant
             size = float(len(variant.model.coordinates))
             crew.add(("teeth", (number, place)), size, _tried, variant.model, *self.settings, bases)
-        # Those of the file's own contact and teeth.
-        if number < len(FORCES) and self.file.tolerances.given:
-            self._add_worst(crew, case.force, worst_case, found.model)
-        settled = sum(place == 0 for _, place in self.outcomes)
-        share = 100 * found.unstable_share
-        self.say(
-            f"case {settled} of {len(self.cases)}: unstable at {share:.3g} % of the speeds ({case.name})"
-        )
-        if settled == len(self.cases):
+        done = sum(place == 0 for _, place in self.failed)
+        self.say(f"case {done} of {len(self.cases)}: {words} ({case.name})")
+        if done == len(self.cases):
             self._add_change(crew)
 
     def _take_teeth(self, crew: Crew, which: tuple[int, int], tried: _Tried) -> None:
@@ -219,7 +229,11 @@ class _Found:
 
     def _add_change(self, crew: Crew) -> None:
         """Look for what helps the first unstable case, as soon as it is known which."""
-        own = (self.outcomes[number, 0] for number in range(len(self.cases)))
+        own = (
+            self.outcomes[which]
+            for number in range(len(self.cases))
+            if (which := (number, 0)) in self.outcomes
+        )
         if (unstable := next((outcome for outcome in own if outcome.tongues), None)) is not None:
             size = float(len(unstable.variant.model.coordinates))
             crew.add(("change", ""), size, _change, self.file, unstable)
@@ -234,6 +248,8 @@ class _Found:
             [reason for which in (*own, *others) for reason in reasons.get(which, ())]
             for reasons in (self.refused, self.failed)
         )
+        if not outcomes:
+            raise ArithmeticError("no model of the disk's motion could be computed: " + "; ".join(failed))
         response, reason = self.found.get(("response", ""), (None, "the file has no section gearbox"))
         refused += [f"dynamic load of the teeth in torsion: {reason}"] * bool(reason)
         change = self.found.get(("change", ""))
@@ -266,21 +282,18 @@ class _Tried(NamedTuple):
     reason: str
 
 
-def _tried(model: FaceGears, speeds: tuple[float, float], tolerance: float, most_steps: int) -> _Tried:
-    try:
-        return _Tried(settled_tongues(model, speeds, tolerance=tolerance, most_steps=most_steps), "")
-    except (ArithmeticError, ValueError) as error:
-        return _Tried(None, told(error))
-
-
-def _settled(
+def _tried(
     model: FaceGears,
     speeds: tuple[float, float],
     tolerance: float,
     most_steps: int,
     known: Sequence[Tongue] | None = None,
-) -> SettledTongues:
-    return settled_tongues(model, speeds, known, tolerance=tolerance, most_steps=most_steps)
+) -> _Tried:
+    try:
+        found = settled_tongues(model, speeds, known, tolerance=tolerance, most_steps=most_steps)
+    except (ArithmeticError, ValueError) as error:
+        return _Tried(None, told(error))
+    return _Tried(found, "")
 
 
 def _in_torsion(

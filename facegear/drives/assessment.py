@@ -14,8 +14,16 @@ from facegear.drives.disk_response_table import peaks_table, response_table
 from facegear.drives.disk_response_words import parting, sentences
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
-from facegear.drives.growth_words import corner, mechanism, told, within_tolerances
-from facegear.drives.intervals import Intervals, gaps, united
+from facegear.drives.growth_words import (
+    SPEED_TURNS,
+    corner,
+    listed,
+    mechanism,
+    told,
+    turning,
+    within_tolerances,
+)
+from facegear.drives.intervals import Intervals, cut, gaps, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
 from facegear.drives.torsion_response import in_words
@@ -77,10 +85,15 @@ class Assessment:
     def verdict(self) -> str:
         """One of "safe under all", "unstable under all", "depends": models, and values in their tolerances."""
         disk = [outcome.is_stable for outcome in self.outcomes]
-        torsion = [not found for found in self.torsion.values()] or [True]
+        # Beyond the operating speeds, in their tolerance, a drive need not run.
+        torsion = [not self._operating(found) for found in self.torsion.values()] or [True]
         if self.failed:
             return DEPENDS if any(torsion) else UNSTABLE
-        if all(disk) and all(torsion) and all(case.is_stable for case in self.worst.values()):
+        if (
+            all(disk)
+            and not any(self.torsion.values())
+            and all(case.is_stable for case in self.worst.values())
+        ):
             return SAFE
         # A drive is stable where the disk and the gearbox are.
         return DEPENDS if any(disk) and any(torsion) else UNSTABLE
@@ -98,15 +111,24 @@ class Assessment:
             if any(len(kinds) == 2 for kinds in seen.values()):
                 found.append(words)
         nominal = {o.variant.force: o.is_stable for o in reversed(self.outcomes) if self._is_own(o)}
-        if self.torsion:
-            nominal[TORSION] = not next(iter(self.torsion.values()))
-        if any(nominal.get(force) and not case.is_stable for force, case in self.worst.items()):
-            found.append("where in their tolerances stiffness, damping and speed lie")
-        if len({bool(tongues) for tongues in self.torsion.values()}) == 2:
+        own = next(iter(self.torsion.values()), ())
+        nominal[TORSION] = not self._operating(own)
+        given = self.file.tolerances
+        turned = [
+            turning(force, case, given, self.speeds)
+            for force, case in self.worst.items()
+            if nominal.get(force) and not case.is_stable
+        ]
+        found += dict.fromkeys(turned + [SPEED_TURNS] * (nominal[TORSION] and bool(own)))
+        if len({bool(self._operating(tongues)) for tongues in self.torsion.values()}) == 2:
             found.append("contact or arm of the mesh force in torsion")
         if self.failed:
             found.append("models that could not be computed")
         return tuple(found)
+
+    def _operating(self, found: Sequence[Tongue]) -> Intervals:
+        """Where tongues stand in the operating range, without its tolerance."""
+        return cut(united(_intervals(found)), self.speeds)
 
     def _is_own(self, outcome: Outcome) -> bool:
         first = self.outcomes[0].variant
@@ -128,8 +150,6 @@ class Assessment:
         every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
         # Where it is not known, nothing is known to be stable.
         every += [interval for case in self.worst.values() for interval in case.possible]
-        # What opens between two values has no width that is known.
-        every += [(each.speed, each.speed) for case in self.worst.values() for each in case.opens]
         every += [interval for found in self.torsion.values() for interval in _intervals(found)]
         return gaps(united(every), self.speeds)
 
@@ -148,7 +168,7 @@ class Assessment:
         elif self.verdict == UNSTABLE:
             words = f"Unstable under all: {where} each is unstable at some speeds."
         else:
-            words = f"Depends on {_listed(self.decides)}: {where} {are} stable at all speeds."
+            words = f"Depends on {listed(self.decides)}: {where} {are} stable at all speeds."
         words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
         values = ", the values of its tolerances that were looked at included" if self.worst else ""
         words += f" Speeds at which every model is known to be stable{values}: {told(self.always_stable)}."
@@ -268,8 +288,3 @@ class Assessment:
 
 def _intervals(found: Sequence[Tongue]) -> Intervals:
     return tuple((tongue.lower, tongue.upper) for tongue in found)
-
-
-def _listed(words: Sequence[str]) -> str:
-    *others, last = words or ("the values taken",)
-    return f"{', '.join(others)} and {last}" if others else last

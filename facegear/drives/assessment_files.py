@@ -18,6 +18,7 @@ from facegear.drives.growth_words import told
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
 from facegear.drives.report_arrays import describe
+from facegear.drives.tolerance_cells import FINE, HALF, MOST
 from facegear.drives.torsion_response import peaks_table, response_table
 from facegear.drives.variants import Variant
 from facegear.maps.tracing import Tongue
@@ -29,6 +30,8 @@ from facegear.support.tables import write_table
 
 # Resonances of each model that the page names.
 _PEAKS = 5
+# Values in tolerances shown on the page, of each table.
+_MOST_VALUES = 40
 # Headings of what grows fastest.
 _FASTEST = ("fastest", "growth [1/s]")
 _BASIS = "nodal circles, diameters"
@@ -143,13 +146,15 @@ def _tolerances(found: Assessment) -> Section:
     if TORSION in found.worst:
         tables += tuple(_at_values([TORSION], found, "Values in the range, in torsion"))
     words = Paragraph(
-        "Of the file's own contact and teeth, at both ends and the middle of each stiffness and both ends of each "
-        "damping, over speeds so wide that no tongue comes into the range from outside unseen. Natural frequencies "
-        "rise with every stiffness: a tongue that stands at all of these values has swept all speeds between its "
-        "places. One that stands at some of them may reach to the next, and there it is not known. Where none "
-        "comes into the range, the largest growth there is followed along the edges. A tongue that stands at none of "
-        "these values or edges, but between them, is not seen: stable is what was looked at. "
-        "Between the values one may also grow faster than at any."
+        "Of the file's own contact and teeth, at both ends of each damping, and at values of each stiffness as close "
+        "together as it took, over speeds so wide that no tongue comes into the range from outside unseen. Natural "
+        "frequencies rise with every stiffness: a tongue that stands at neighbouring values has swept all speeds "
+        "between its places. One that stands at some of them only, or between them where it is better tuned, is looked "
+        f"for with {HALF:g} times the damping as well: where anything stands then, the values are taken closer, down "
+        f"to {100 * (FINE - 1):.3g} % of the stiffness, and there it is looked for with {MOST:g} times the damping. "
+        "Speeds at which something stands even so, or at which two resonances meet, or for which the work allowed was "
+        "not enough, are not known. Stable are those at which nothing stands: a resonance whose strength doubles "
+        "within a part of a step would still be missed. Between the values something may also grow faster than at any."
     )
     return Section(title, (words, Listing(found.over_tolerances), *tables))
 
@@ -159,16 +164,22 @@ def _at_values(names: Sequence[str], found: Assessment, caption: str) -> Iterato
     cases = {name: found.worst[name] for name in names if found.worst[name].points}
     if not cases:
         return
+    points = [(name, *point) for name, case in cases.items() for point in case.points.items()]
+    shown = sorted(points, key=lambda row: -max((t.growth_rate for t in row[2]), default=0.0))[:_MOST_VALUES]
     rows = tuple(
         (
             name,
-            *(f"{factor:g}" for factor in factors),
+            *(f"{factor:.4g}" for factor in factors),
             ", ".join(f"{rpm(t.lower):.4g} to {rpm(t.upper):.4g}" for t in tongues) or "none",
             *_fastest(tongues),
         )
-        for name, case in cases.items()
-        for factors, tongues in case.points.items()
+        for name, factors, tongues in points
+        if any(row[:2] == (name, factors) for row in shown)
     )
+    if len(points) > len(shown):
+        caption += (
+            f"; of {len(points)} the {len(shown)} at which something grows fastest, all are in tolerances.csv"
+        )
     factors = next(iter(cases.values())).factors
     headings = ("model", *(f"{words}, times" for words in factors), "unstable [rpm]", *_FASTEST)
     yield Table(headings, rows, caption)
@@ -191,12 +202,11 @@ def _in_torsion(found: Assessment) -> Iterator[Paragraph | Picture]:
     if found.response is None:
         yield Paragraph("In torsion it is computed for files with a section gearbox.")
         return
-    yield Paragraph(f"{found.dynamic_load}")
     yield Picture(
         draw.dynamic_load(found.response, found.static_force),
-        "Forces between teeth under the torque of one pinion's power, over speed, and at its resonances between the "
-        "speeds; none where the gearbox is unstable. Where forces go beyond a hundred times the static one the axis is "
-        "logarithmic away from zero.",
+        "Forces between teeth in torsion under the torque of one pinion's power, over speed, and at its resonances "
+        "between the speeds; none where the gearbox is unstable. Where forces go beyond a hundred times the static one "
+        "the axis is logarithmic away from zero.",
         "Two curves over speed that part near resonances",
     )
 

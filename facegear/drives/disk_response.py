@@ -19,9 +19,10 @@ from facegear.drives.basis import unstable_share, with_basis
 from facegear.drives.outcome import Outcome
 from facegear.drives.refusals import told
 from facegear.drives.variants import Variant
+from facegear.floquet.fourier import fourier_series
 from facegear.floquet.models import Coordinate, system_at
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.response_map import frequency_response
 from facegear.mechanics.disk import modal_mass
 from facegear.mechanics.pinions_on_disk import FaceGears

@@ -79,13 +79,13 @@ def _basis(found: DiskResponse, digits: int) -> str:
 
 def _parted(data: xr.Dataset, static: float) -> str:
     """Say at how many speeds, and at how many peaks between them, flanks would part."""
-    speeds, count, beyond = parted(data, static)
-    words = f"Of {data.sizes['speed']} speeds it is stable at {count}, and flanks would part at {speeds}"
-    rises = count < data.sizes["speed"] or data.attrs["at_borders"]
+    part = parted(data, static)
+    words = f"Of {data.sizes['speed']} speeds it is stable at {part.known}, and flanks would part at {part.speeds}"
+    rises = part.known < data.sizes["speed"] or data.attrs["at_borders"]
     last = AT_BORDERS if rises else ""
     if not (peaks := data.sizes["peak"]):
         return f"{words}.{last}"
-    return f"{words}; of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them, at {beyond}.{last}"
+    return f"{words}; of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them, at {part.peaks}.{last}"
 
 
 def parting(found: Sequence[DiskResponse], static: float, in_torsion: xr.Dataset | None) -> str:
@@ -104,18 +104,19 @@ def parting(found: Sequence[DiskResponse], static: float, in_torsion: xr.Dataset
     str
         A sentence; empty where none says so.
     """
-    disk = [(*parted(each.data, static), each.variant.name) for each in found if each.data is not None]
+    disk = [(parted(each.data, static), each.variant.name) for each in found if each.data is not None]
     places = []
     if disk:
-        *counts, name = max(disk, key=lambda each: (each[0], each[2]))
-        places.append((f"in the disk's motion ({name})", *counts))
+        worst, name = max(disk, key=lambda each: (each[0].speeds, each[0].peaks))
+        places.append((f"in the disk's motion ({name})", worst))
     if in_torsion is not None:
-        places.append(("in torsion", *parted(in_torsion)))
+        places.append(("in torsion", parted(in_torsion)))
     told = [
-        f"{where} at {speeds} of {count} speeds"
-        + f" and {peaks} of the resonances between them" * bool(peaks)
-        for where, speeds, count, peaks in places
-        if speeds or peaks
+        f"{where} at {part.speeds} of {part.known} speeds"
+        + f" and {part.peaks} of the resonances between them" * bool(part.peaks)
+        + f", where they are pulled by up to {rounded(part.pull / static, 2)} times the static force"
+        for where, part in places
+        if part.speeds or part.peaks
     ]
     if not told:
         return ""

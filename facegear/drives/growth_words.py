@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from facegear.drives.findings import TORSION
 from facegear.drives.intervals import Intervals, cut, gaps, in_rpm
@@ -57,38 +57,77 @@ def within_tolerances(worst: Mapping[str, WorstCase], given: Tolerances) -> tupl
         By the direction of the force, or "torsion".
     given : Tolerances
     """
-    disk = {"stiffness": given.stiffness, "damping": given.damping, "speed": given.speed}
-    torsion = {"stiffness of teeth": given.stiffness, "damping of teeth": given.damping}
-    torsion |= {"stiffness of shafts": given.shaft_stiffness, "damping of shafts": given.shaft_damping}
-    torsion |= {"speed": given.speed}
     found = []
     for force, case in worst.items():
-        parts = torsion if force == TORSION else disk
+        parts = {**_parts(force, given), "speed": given.speed}
         ranges = ", ".join(f"{name} ±{100 * part:g} %" for name, part in parts.items() if part)
         found.append(f"With {ranges}, {force}: {_outcome(case)}.")
     return tuple(found)
 
 
+def turning(force: str, case: WorstCase, given: Tolerances, speeds: tuple[float, float]) -> str:
+    """Say which tolerances make a drive unstable that is stable without them, or may do so.
+
+    Parameters
+    ----------
+    force : str
+        Direction of the force, or "torsion".
+    case : WorstCase
+    given : Tolerances
+    speeds : tuple of float
+        Operating range [rad/s].
+
+    Returns
+    -------
+    str
+        That of speed only if it takes speeds beyond the operating ones.
+    """
+    names = [name for name, part in _parts(force, given).items() if part]
+    beyond = not cut(case.possible, speeds)
+    if beyond and any(case.points.get((1.0,) * len(case.factors), ())):
+        return SPEED_TURNS
+    names += ["speed"] * (beyond and given.speed > 0.0)
+    one = len(names) == 1
+    if not case.swept:
+        return (
+            f"whether anything in the {'tolerance' if one else 'tolerances'} of {listed(names)} is unstable, which is "
+            "not known"
+        )
+    return f"where in {'its tolerance' if one else 'their tolerances'} {listed(names)} {'lies' if one else 'lie'}"
+
+
+SPEED_TURNS = "speeds beyond the operating ones, in their tolerance"
+"""What decides where a drive is stable at the operating speeds, and not just beyond them."""
+
+
+def listed(words: Sequence[str]) -> str:
+    """List words with "and" before the last; "the values taken" if there are none."""
+    *others, last = words or ("the values taken",)
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def _parts(force: str, given: Tolerances) -> dict[str, float]:
+    """Tolerances of stiffness and damping in the words of the disk's motion, or of torsion."""
+    if force != TORSION:
+        return {"stiffness": given.stiffness, "damping": given.damping}
+    teeth = {"stiffness of teeth": given.stiffness, "damping of teeth": given.damping}
+    return teeth | {"stiffness of shafts": given.shaft_stiffness, "damping of shafts": given.shaft_damping}
+
+
 def _outcome(case: WorstCase) -> str:
     if case.unknown:
         return f"not known ({case.unknown})"
+    looked = f"the {len(case.points)} values looked at"
     if case.is_stable:
-        return "stable at all values looked at"
-    if case.opens:
-        speeds = ", ".join(f"{rpm(each.speed):.4g}" for each in case.opens)
-        return f"stable at all values looked at; tongues open between them at {speeds} rpm"
+        return f"stable at {looked}, and nothing near them is so strong that it could come between"
     left = tuple(part for gap in gaps(case.swept, case.speeds) for part in cut(case.possible, gap))
-    rest = (
-        f"not known at {told(left)}, where a tongue may come that stands at some of the values looked at only"
-        if left
-        else ""
-    )
+    free = gaps(case.possible, case.speeds)
+    rest = f"; not known at {told(left)}, where something may be unstable between {looked}" if left else ""
+    rest += f"; stable at {told(free)}" if free else "; nowhere known to be stable"
     if not case.swept:
-        return f"{rest}; stable elsewhere at all values looked at"
+        return rest.removeprefix("; ")
     words = f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"
     if case.fastest is None:
-        words += "; between the values looked at, so that it is not known how fast"
-    else:
-        factors, tongue = case.fastest
-        words += f"; fastest of the values looked at: {mechanism(tongue)}, {corner(factors, case.factors)}"
-    return f"{words}; {rest}" if rest else words
+        return f"{words}; between {looked}, so that it is not known how fast{rest}"
+    factors, tongue = case.fastest
+    return f"{words}; fastest of {looked}: {mechanism(tongue)}, {corner(factors, case.factors)}{rest}"

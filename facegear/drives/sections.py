@@ -32,8 +32,8 @@ def number_table(rows: Sequence[Row], caption: str) -> Table:
 
 
 def _readable(value: float) -> str:
-    """Six digits, without a power of ten."""
-    return np.format_float_positional(value, precision=6, fractional=False, trim="-")
+    """Five digits, without a power of ten."""
+    return np.format_float_positional(value, precision=5, fractional=False, trim="-")
 
 
 def verdict(found: Findings) -> Section:

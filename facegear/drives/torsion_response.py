@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -35,8 +35,20 @@ def largest_load(response: xr.Dataset) -> tuple[float, float]:
     return float(forces[at]), float(np.append(known["speed"], response["peak_speed"])[at])
 
 
-def parted(response: xr.Dataset, static: float = 0.0) -> tuple[int, int, int]:
-    """Count speeds at which flanks would part, those with a steady response, and peaks between them where they part.
+class Parting(NamedTuple):
+    """Where flanks would part: of `known` speeds with a steady response at `speeds`, and at `peaks` between them.
+
+    The largest `pull` on flanks there is in N.
+    """
+
+    speeds: int
+    known: int
+    peaks: int
+    pull: float
+
+
+def parted(response: xr.Dataset, static: float = 0.0) -> Parting:
+    """Count speeds, and peaks between them, at which flanks would part.
 
     Parameters
     ----------
@@ -45,11 +57,11 @@ def parted(response: xr.Dataset, static: float = 0.0) -> tuple[int, int, int]:
     static : float
         Force that presses the flanks and is none of the response [N].
     """
-    known = response.dropna("speed", subset=["force_highest"])
-    count = known.sizes["speed"]
-    speeds = int((known["force_lowest"].min("load") < -static).sum()) if count else 0
+    known = response.dropna("speed", subset=["force_highest"])["force_lowest"].min("load").values + static
     peaks = response.get("peak_force_lowest")
-    return speeds, count, 0 if peaks is None else int((peaks < -static).sum())
+    between = np.zeros(0) if peaks is None else peaks.values + static
+    pull = float(max(0.0, -np.concatenate([known, between, [0.0]]).min()))
+    return Parting(int((known < 0.0).sum()), known.size, int((between < 0.0).sum()), pull)
 
 
 def in_words(response: xr.Dataset, static: float) -> str:
@@ -71,17 +83,17 @@ def in_words(response: xr.Dataset, static: float) -> str:
     if not count:
         return "In torsion it is unstable at all speeds looked at: there is no steady load of the teeth."
     peaks, (largest, speed) = response.sizes["peak"], largest_load(response)
-    open_speeds, _, beyond = parted(response)
+    part = parted(response)
     rises = count < response.sizes["speed"] or response.attrs["at_borders"]
     between = (
-        f", and of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them at {beyond}"
+        f", and of {peaks} {'peak' if peaks == 1 else 'peaks'} of resonances between them at {part.peaks}"
         if peaks
         else ""
     )
     return (
         f"In torsion, at {count} of {response.sizes['speed']} speeds where it is stable, and as long as flanks do not "
         f"part, a tooth pair bears up to {largest:.4g} N, at {rpm(speed):.4g} rpm: {largest / static:.3g} times the "
-        f"whole static force of {static:.4g} N. At {open_speeds} of these {count} speeds flanks would part{between}."
+        f"whole static force of {static:.4g} N. At {part.speeds} of these {count} speeds flanks would part{between}."
         f"{AT_BORDERS if rises else ''}"
     )
 

@@ -1,27 +1,29 @@
 """The engine: stability of linear systems with periodic coefficients (chapter 2). It knows nothing of gears.
 
 Systems: `periodic` has the equations, `loads` what varies in them, `load_columns` its parameters for many values,
-`rigid_motion` what meets no load, `piecewise` and `series` the series they are made of; `models` says what makes a
-system at each speed, `modified_models` are made of others.
+`rigid_motion` what meets no load, `piecewise`, `fourier` and `series` the series they are made of; `models` says what
+makes a system at each speed, `modified_models` are made of others.
 
-Multipliers: `multipliers` has the transition matrix by one of four methods. `collocation` takes the modes of
-`free_modes`, the panels of `gauss_panels` and the equations of `contact_forces`; the others are `stepping`, `radau` and
-`taylor`. `columns`, `multiplier_curves` and `sheets` have it along a parameter, along speed and along both.
-`eigenvalues` and `eigenvectors` are those of many matrices, in `lockstep` and `lockstep_vectors` where Numba is
-installed (`compiled`), as `lockstep_exponentials` and `lockstep_taylor` have steps of small systems.
+Multipliers: `multipliers` are those of the transition matrix by one of the `methods`; `error_estimates` tell how well
+they are known. `collocation` takes the modes of `free_modes`, the panels of `gauss_panels` and the equations of
+`contact_forces`; the others are `stepping`, `radau` and `taylor`. `columns`, `multiplier_curves` and `sheets` have the
+matrix along a parameter, along speed and along both. `eigenvalues` and `eigenvectors` are those of many matrices, in
+`lockstep` and `lockstep_vectors` where Numba is installed (`compiled`), as `lockstep_exponentials` and
+`lockstep_taylor` have steps of small systems.
 
 Modes and approximations: `modes` has natural motions, `labels` names what is unstable; `modal` is the standard form for
 `averaging` and `hsu`, along speed `band_speeds`, and `hill` has the harmonic balance.
 
 Motions: `response` has the steady one that forces cause, along the panels of `motion`. Systems whose loads act in
-contact only are those of `clearance`: `orbits` has their periodic motions, on the panels of `contact_panels`,
-`continuation` follows the `branches` of these along a parameter, by steps of `arc_length`, `transients` has where other
-motions end, compiled in `lockstep_transients` where Numba is installed.
+contact only are those of `clearance`: `orbits` has their periodic motions, each a `contact_motion` with one of the
+`contact_patterns`, for which `contact_panels` has the equations; `continuation` follows the `branches` of these along a
+parameter, by steps of `arc_length`, `transients` has where other motions end, compiled in `lockstep_transients` where
+Numba is installed.
 
 What each method takes, and what it costs. The state *jumps* where the slope of a shape jumps under a mass that follows
 it, and where a system says so; a load whose strength varies, mass included, has a *weight*; *overdamped* and *rigid*
 modes do not oscillate; *sensitivities* are the derivatives of :mod:`facegear.maps.sensitivity`. Without a name
-:func:`facegear.floquet.multipliers.with_method` takes `Collocation`, and `AdaptiveMagnus` where that does not apply;
+:func:`facegear.floquet.methods.with_method` takes `Collocation`, and `AdaptiveMagnus` where that does not apply;
 maps of small systems take `Taylor`.
 
 ===============  =====  ==========  =====  =======  =============  =====  ==========================================

@@ -15,7 +15,9 @@ import numpy as np
 
 from facegear.floquet.branches import Kind
 from facegear.floquet.clearance import ClearanceSystem
-from facegear.floquet.contact_panels import Motion, Panels, linearised
+from facegear.floquet.contact_motion import Motion
+from facegear.floquet.contact_panels import linearised
+from facegear.floquet.contact_patterns import Panels
 from facegear.floquet.orbits import Orbit, Step, require_clearances
 from facegear.support.kinds import named, require_kind
 from facegear.support.parameters import finite, integer_at_least, keep, positive, within

@@ -18,7 +18,8 @@ from facegear.floquet.collocation import FreeMotion
 from facegear.floquet.contact_forces import mobilities
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.load_columns import LoadColumn
-from facegear.floquet.multipliers import Collocation, Method, transition_matrices, with_method
+from facegear.floquet.methods import Collocation, Method, with_method
+from facegear.floquet.multipliers import transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
@@ -55,7 +56,7 @@ def column_spectral_radii(
         Load parameters m [kg], c [N s/m], k [N/m] (or rotational units) along the column, not negative. One
         number for all loads or one a load; a single number holds for the whole column.
     method : Method, optional
-        See :func:`facegear.floquet.multipliers.with_method` if left out.
+        See :func:`facegear.floquet.methods.with_method` if left out.
 
     Returns
     -------
@@ -95,7 +96,7 @@ def family_spectral_radii(
         their meaning and breakpoints that stay.
     values : array_like, shape (V,)
     method : Method, optional
-        See :func:`facegear.floquet.multipliers.with_method` if left out.
+        See :func:`facegear.floquet.methods.with_method` if left out.
 
     Returns
     -------

@@ -22,9 +22,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
-from facegear.floquet.multipliers import Method, multipliers
+from facegear.floquet.fourier import fourier_series
+from facegear.floquet.methods import Method
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem, require_system
-from facegear.floquet.piecewise import fourier_series
 from facegear.floquet.stepping import Family
 from facegear.support.parameters import integer_within, positive
 from facegear.support.types import ComplexArray, FloatArray

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 from facegear.floquet.collocation import transition_matrices_to
 from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.methods import Method
 from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import NaturalMotions
-from facegear.floquet.multipliers import Method, transition_matrix
+from facegear.floquet.multipliers import transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.types import ComplexArray, FloatArray
 
@@ -124,7 +125,7 @@ def combination(system: PeriodicSystem, method: Method | None = None) -> Combina
     system : PeriodicSystem
         An unstable one, best taken at the peak of the growth rate.
     method : Method, optional
-        Method of :mod:`facegear.floquet.multipliers` for the transition matrix of the period.
+        Method of :mod:`facegear.floquet.methods` for the transition matrix of the period.
 
     Returns
     -------

@@ -20,10 +20,10 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import eigh
 
+from facegear.floquet.fourier import FourierSeries
 from facegear.floquet.modes import ROUNDING as _ROUNDING
 from facegear.floquet.modes import NaturalMotions
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import FourierSeries
 from facegear.support.parameters import integer_at_least
 from facegear.support.types import ComplexArray, FloatArray
 

@@ -17,14 +17,10 @@ from numpy.typing import NDArray
 
 from facegear.floquet.compiled import LANES
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.error_estimates import disturbed, rounding_error
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import Model
-from facegear.floquet.multipliers import (
-    Method,
-    disturbed,
-    rounding_error,
-    transition_matrices,
-    with_method,
-)
+from facegear.floquet.multipliers import transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries, lobatto_coefficients
 from facegear.floquet.stepping import Family
@@ -167,7 +163,7 @@ class MultiplierCurve:
     ) -> MultiplierCurve:
         """Interpolate the transition matrices of a model between two speeds [rad/s].
 
-        The method is as :func:`facegear.floquet.multipliers.with_method` says, one for all speeds. `looked_at` is told
+        The method is as :func:`facegear.floquet.methods.with_method` says, one for all speeds. `looked_at` is told
         the number of matrices whenever some have been computed or interpolated.
 
         Raises

@@ -16,15 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.clearance import ClearanceSystem
-from facegear.floquet.contact_panels import (
-    Linearised,
-    Motion,
-    Panels,
-    Pattern,
-    found_pattern,
-    linearised,
-    struck,
-)
+from facegear.floquet.contact_motion import Motion, found_pattern
+from facegear.floquet.contact_panels import Linearised, linearised, struck
+from facegear.floquet.contact_patterns import Panels, Pattern
 from facegear.floquet.loads import StateJump
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, Side

@@ -19,16 +19,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.fourier import FourierSeries, fourier_series
 from facegear.floquet.loads import ROUNDING_OF_A_FIT, ContactLoad, StateJump, weighted_shape
-from facegear.floquet.piecewise import (
-    FourierSeries,
-    PiecewiseChebyshev,
-    Side,
-    fourier_series,
-    merge_breakpoints,
-    real_array,
-    wrap,
-)
+from facegear.floquet.piecewise import PiecewiseChebyshev, Side, merge_breakpoints, real_array, wrap
 from facegear.support.kinds import named
 from facegear.support.parameters import finite_array, integer_at_least, keep, positive
 from facegear.support.types import FloatArray

@@ -97,7 +97,7 @@ class Radau:
         )
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
-        """See :class:`facegear.floquet.multipliers.Method`."""
+        """See :class:`facegear.floquet.methods.Method`."""
         if family.carries_derivatives:
             raise ValueError(
                 "Radau panels take a position and its rate, not their derivatives; use AdaptiveMagnus"
@@ -136,7 +136,7 @@ class Radau:
     def rounding(self, family: Family) -> float:
         """Return an angle as of its first panels; dead motions leave none behind.
 
-        See :class:`facegear.floquet.multipliers.Method`.
+        See :class:`facegear.floquet.methods.Method`.
         """
         return _PANEL_ANGLE * (_graded_edges(family, _PANEL_ANGLE, -np.log(self.tolerance)).size - 1)
 

@@ -16,8 +16,8 @@ from numpy.polynomial import chebyshev, legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import spherical_jn
 
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.motion import FollowsMotion, MotionPanels, known_errors, known_forces
-from facegear.floquet.multipliers import Method, with_method
 from facegear.floquet.periodic import PeriodicSystem, require_system
 from facegear.floquet.piecewise import PiecewiseChebyshev, Side
 from facegear.floquet.radau import Radau
@@ -216,7 +216,7 @@ def steady_response(
     ----------
     system : PeriodicSystem
     method : Method, optional
-        :class:`facegear.floquet.multipliers.Collocation` or :class:`facegear.floquet.radau.Radau`, which know the
+        :class:`facegear.floquet.methods.Collocation` or :class:`facegear.floquet.radau.Radau`, which know the
         motion along the period. If left out, the first where it applies, else the second.
     allow_unstable : bool
         Whether a motion is wanted that any disturbance would leave.
@@ -255,7 +255,7 @@ def steady_response(
 def _steady(system: PeriodicSystem, method: Method, allow_unstable: bool) -> SteadyResponse:
     if not isinstance(method, FollowsMotion):
         raise ValueError(
-            "method must be Collocation or Radau (of facegear.floquet.multipliers and facegear.floquet.radau) for a "
+            "method must be Collocation or Radau (of facegear.floquet.methods and facegear.floquet.radau) for a "
             "response, which know the motion along the period, got "
             f"{method!r}"
         )

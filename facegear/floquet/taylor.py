@@ -118,7 +118,7 @@ class Taylor:
         keep(self, tolerance=within("tolerance", self.tolerance, 1e-16, 1e-2))
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
-        """See :class:`facegear.floquet.multipliers.Method`."""
+        """See :class:`facegear.floquet.methods.Method`."""
         return np.asarray(self.over(family, np.ones(1))[:, 0])
 
     def refined(self) -> Taylor:
@@ -126,7 +126,7 @@ class Taylor:
         return Taylor(self.angle / 2.0, max(1e-3 * self.tolerance, 1e-16))
 
     def rounding(self, family: Family) -> float:
-        """See :class:`facegear.floquet.multipliers.Method`: terms up to angle^k/k! cancel in each step."""
+        """See :class:`facegear.floquet.methods.Method`: terms up to angle^k/k! cancel in each step."""
         largest = self.angle**self.angle / math.gamma(1.0 + self.angle)
         return float(largest / self.angle * family.exponent_norm)
 

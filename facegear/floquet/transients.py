@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from facegear.floquet.clearance import ClearanceSystem
 from facegear.floquet.compiled import where_compiled
-from facegear.floquet.contact_panels import Pattern, merged
+from facegear.floquet.contact_patterns import Pattern, merged
 from facegear.floquet.loads import weighted_shape
 from facegear.floquet.piecewise import Side
 from facegear.support.parameters import finite_array, integer_at_least, integer_within

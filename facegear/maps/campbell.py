@@ -14,7 +14,7 @@ from scipy.optimize import brentq, linear_sum_assignment
 
 from facegear.floquet.models import Model, require_model, system_at
 from facegear.floquet.modes import NaturalMotions
-from facegear.maps.stability_map import checked_speeds
+from facegear.maps.axes import checked_speeds
 from facegear.support.parameters import integer_within, positive
 from facegear.support.threads import one_thread
 from facegear.support.types import ComplexArray, FloatArray

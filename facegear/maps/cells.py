@@ -14,10 +14,11 @@ import numpy as np
 
 from facegear.floquet.columns import LOWEST_DEGREE, LoadSweep, agree, of_one_size, resolved
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.error_estimates import shift_by_rounding
 from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.load_columns import LoadColumn
+from facegear.floquet.methods import FIRST
 from facegear.floquet.models import Model, system_at
-from facegear.floquet.multipliers import FIRST, shift_by_rounding
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries, chebyshev_basis, lobatto_coefficients
 from facegear.floquet.sheets import SHEET_TOLERANCE

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from facegear.floquet.labels import Combination, combination
+from facegear.floquet.methods import Method
 from facegear.floquet.models import Model, parameter_path, replace_parameter
 from facegear.floquet.multiplier_curves import MultiplierCurve
-from facegear.floquet.multipliers import Method
 from facegear.maps.peaks import Peak, critical_value, largest_between
 from facegear.support.parameters import ascending, finite_array
 from facegear.support.threads import one_thread

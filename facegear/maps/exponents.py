@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from facegear.floquet.methods import Method
 from facegear.floquet.models import Model, system_at
-from facegear.floquet.multipliers import Method
 from facegear.floquet.stepping import Family
 from facegear.maps.sensitivity import transition_derivatives
 from facegear.support.types import ComplexArray, FloatArray

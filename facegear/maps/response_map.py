@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.labels import resonance
+from facegear.floquet.methods import Method
 from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
 from facegear.floquet.modes import mean_matrices, natural_exponents
-from facegear.floquet.multipliers import Method
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.response import SteadyResponse, steady_response
+from facegear.maps.axes import checked_speeds, checked_values, speed_coordinates
 from facegear.maps.parallel import computed, parts_of
-from facegear.maps.stability_map import checked_speeds, checked_values, speed_coordinates
 from facegear.support.parameters import number_of_workers, within
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray

@@ -15,9 +15,11 @@ import numpy as np
 
 from facegear.floquet.columns import interpolated_spectral_radii
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.error_estimates import rounding_error
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import Model, replace_at
 from facegear.floquet.multiplier_curves import FrozenMotions
-from facegear.floquet.multipliers import Method, rounding_error, transition_matrices, with_method
+from facegear.floquet.multipliers import transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.sheets import FEWEST_SPEEDS, SHEET_TOLERANCE, windows
 from facegear.floquet.stepping import Family
@@ -45,7 +47,7 @@ class Rows:
     speeds : tuple of float
         Ascending [rad/s].
     method : Method, optional
-        See :func:`facegear.floquet.multipliers.with_method` if left out.
+        See :func:`facegear.floquet.methods.with_method` if left out.
     """
 
     model: Model

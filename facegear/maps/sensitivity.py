@@ -5,7 +5,7 @@ equation with a further term, so that the state and its derivative together have
 
     d/dx [X, dX/dp] = [[B, 0], [dB/dp, B]] [X, dX/dp]   →   [[Φ, 0], [dΦ/dp, Φ]],
 
-which the methods of :mod:`facegear.floquet.multipliers` take as any other. A simple multiplier λ with the left and
+which the methods of :mod:`facegear.floquet.methods` take as any other. A simple multiplier λ with the left and
 right eigenvectors y and x of Φ then changes by dλ = yᴴ dΦ x / (yᴴ x), and a border of a tongue, where max|λ| = 1, moves
 by dΩ/dp = −(∂|λ|/∂p) / (∂|λ|/∂Ω).
 """
@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from facegear.floquet.loads import ContactLoad
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import Model, parameter_path, replace_at, value_of
-from facegear.floquet.multipliers import Method, with_method
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import Side
 from facegear.floquet.series import ChebyshevSeries
@@ -338,7 +338,7 @@ def sensitivity(
     parameters : sequence of str
         P names, as for :func:`system_derivative`.
     method : Method, optional
-        See :func:`facegear.floquet.multipliers.with_method` if left out; collocation does not apply.
+        See :func:`facegear.floquet.methods.with_method` if left out; collocation does not apply.
 
     Returns
     -------

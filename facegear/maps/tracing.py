@@ -16,9 +16,10 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from facegear.floquet.labels import Combination, Kind, combination
+from facegear.floquet.methods import Method
 from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
-from facegear.floquet.multipliers import Method, multipliers
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.rigid_motion import rigid_motions
 from facegear.maps.parallel import computed, parts_of
@@ -32,10 +33,10 @@ _KINDS: tuple[Kind, ...] = get_args(Kind)
 
 # A rigid-body motion drifts: its double multiplier 1 is known to the root of rounding at best.
 _DRIFT = 1e-6
-# Time of a search by points of its first grid and size d of the matrices, points · factor · d^power [s]: measured with
-# disks of 14 to 68 coordinates at 200 to 600 rpm. Pairs of multipliers that meet add samples with d, the eigenvalue
-# problem of each adds the rest.
-_SECONDS, _POWER = 3.5e-8, 3.2
+# Time of a search by points of its first grid and size d of the matrices, points · (least + factor · d^power) [s]:
+# measured with gearboxes of 3 and 7 coordinates and disks of 5 to 84, at 200 to 600 and at 540 to 560 rpm. Pairs of
+# multipliers that meet add samples, the more the larger d is.
+_LEAST_SECONDS, _SECONDS, _POWER = 4e-4, 8e-8, 2.4
 
 # Samples of speed closer than this, relative, are one where a maximum is looked for.
 _APART = 1e-5
@@ -100,7 +101,7 @@ def tongues(
     speeds : (low, high)
         Range looked at [rad/s], as any two numbers.
     method : Method, optional
-        Method of :mod:`facegear.floquet.multipliers`; see :func:`facegear.floquet.multipliers.with_method` if left out.
+        Method of :mod:`facegear.floquet.methods`; see :func:`facegear.floquet.methods.with_method` if left out.
     threshold : float
         Growth in a period, max|λ| − 1, from which a speed counts as unstable [-]. Damping keeps stable multipliers
         clearly inside the unit circle; without damping they lie on it, and rounding alone must not look like growth.
@@ -171,15 +172,15 @@ def search_seconds(model: Model, speeds: ArrayLike) -> float:
     Returns
     -------
     float
-        [s] on one core of a processor of 2023; right within a factor of three or so for disks. It goes with the
-        third power of the number of coordinates, and with the angle by which the fastest motion turns in a period.
+        [s] on one core of a processor of 2023; right within a factor of three or so. It goes with more than the
+        square of the number of coordinates, and with the angle by which the fastest motion turns in a period.
 
     Examples
     --------
     >>> from facegear.mechanics.cases import FIGURES
     >>> from facegear.floquet.models import replace_parameter
     >>> small = FIGURES["4.4a"].model()
-    >>> large = replace_parameter(small, "nodal_diameters", 6)
+    >>> large = replace_parameter(small, "nodal_diameters", 8)
     >>> search_seconds(large, (50.0, 70.0)) > 4.0 * search_seconds(small, (50.0, 70.0))
     True
     """
@@ -187,7 +188,7 @@ def search_seconds(model: Model, speeds: ArrayLike) -> float:
     motions = FrozenMotions.of(model, 1.0 / high, 1.0 / low)
     size = 2 * system_at(model, high).size
     samples = motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES).size
-    return float(samples * _SECONDS * size**_POWER)
+    return float(samples * (_LEAST_SECONDS + _SECONDS * size**_POWER))
 
 
 def _refuse_rigid_motion(system: PeriodicSystem) -> None:

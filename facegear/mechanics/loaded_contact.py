@@ -22,7 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
+from facegear.floquet.fourier import fourier_series
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.misalignment import ALIGNED, Misalignment
 from facegear.mechanics.compliance import Compliance, Lines, PairCompliance, SliceCompliance

@@ -15,7 +15,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
+from facegear.floquet.fourier import fourier_series
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import ContactPath
 from facegear.geometry.timed_pairs import PairStates, TimedPairs

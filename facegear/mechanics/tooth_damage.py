@@ -17,8 +17,9 @@ from typing import Literal
 import numpy as np
 
 from facegear.floquet.loads import ContactLoad
+from facegear.floquet.methods import Method
 from facegear.floquet.models import Coordinate
-from facegear.floquet.multipliers import Method, transition_matrices
+from facegear.floquet.multipliers import transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 from facegear.mechanics.torsional import Torsional

@@ -21,11 +21,12 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.fourier import fourier_series
 from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
 from facegear.floquet.modes import undamped_frequencies
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.geometry.timed_pairs import mesh_period
 from facegear.mechanics.contact import SKEW_LINE, Contact

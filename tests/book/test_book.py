@@ -532,6 +532,22 @@ def test_types_in_docstrings_lead_to_public_names_and_to_other_libraries(visit: 
     assert {"facegear.Drive", "facegear.Contact"} <= {urlsplit(address).fragment for address in addresses}
 
 
+@pytest.mark.parametrize(("width", "said"), [(NARROWEST, True), (1280, False)])
+def test_a_figure_that_moves_sideways_says_so(visit: Callable[..., Visit], width: int, said: bool) -> None:
+    page = visit("notebooks/04_one_pinion.html", width=width).page
+    figure = page.locator(".cell_output figure:has(> img)").first
+    assert figure.evaluate("it => it.scrollWidth > it.clientWidth") is said
+    hint = figure.evaluate("it => getComputedStyle(it.querySelector('figcaption'), '::before').content")
+    assert ("sideways" in hint) is said
+
+
+def test_numbers_of_equations_stay_on_one_line(visit: Callable[..., Visit]) -> None:
+    page = visit("nomenclature.html", width=NARROWEST).page
+    numbers = page.locator(".unbroken").all()
+    assert len(numbers) > 20
+    assert all(number.evaluate("it => it.getClientRects().length") == 1 for number in numbers)
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_title_page_says_in_one_screen_what_the_book_is(visit: Callable[..., Visit], scheme: str) -> None:
     page = visit("intro.html", width=1200, scheme=scheme).page

@@ -14,7 +14,8 @@ from IPython.display import display
 from tests.book.open_cells import code_cells, is_open, needed, python
 
 ROOT = Path(__file__).resolve().parents[2]
-CHAPTERS = sorted((ROOT / "notebooks").glob("0*.ipynb"))
+LONGEST = 12  # lines of an open cell that a reader still takes in at once
+CHAPTERS = sorted((ROOT / "notebooks").glob("[0o]*.ipynb"))  # and the page on systems of one's own
 
 chapters = pytest.mark.parametrize("path", CHAPTERS, ids=lambda path: path.stem)
 every_notebook = pytest.mark.parametrize(
@@ -59,6 +60,17 @@ def test_open_cells_take_nothing_from_the_books_own_code(path):
             assert not [name for name in names if name.split(".")[0] in ("compendium", "myst_nb")], (
                 cell.source
             )
+
+
+@every_notebook
+def test_open_cells_are_short(path):
+    too_long = {
+        cell.id: lines
+        for cell in filter(is_open, code_cells(path))
+        if "parameters" not in cell.metadata.get("tags", [])
+        if (lines := sum(1 for line in cell.source.splitlines() if line.strip())) > LONGEST
+    }
+    assert not too_long
 
 
 def on_a_coarse_grid(source):

@@ -13,7 +13,7 @@ from compendium.datasets import stability as stability_arrays
 from compendium.datasets import tooth_limits as limit_arrays
 from compendium.plotting import meshing, schematics, stability, tooth_limits
 from facegear import Drive
-from facegear.floquet import multipliers as floquet
+from facegear.floquet import methods
 from facegear.geometry import solids
 from facegear.maps.stability_map import stability_map
 from facegear.mechanics import classical, classical_pairs
@@ -143,7 +143,7 @@ DAMPED = stability_arrays.damped_charts(np.linspace(1.5, 2.5, 5), np.linspace(0.
         ),
         (
             lambda: stability.estimates(
-                accuracy_arrays.estimates(GEARS, [("magnus", floquet.Magnus(16))], "gears")
+                accuracy_arrays.estimates(GEARS, [("magnus", methods.Magnus(16))], "gears")
             ),
             "Magnus, aligned",
         ),

@@ -101,14 +101,15 @@ class TestVerdict:
 
     def test_tolerances_turn_a_stable_drive(self):
         swept = ((float(rad_per_s(200.0)), float(rad_per_s(290.0))),)
-        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, {}, swept, swept, ())}
+        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, {}, swept, swept)}
         file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1, speed=0.02))
         found = assessment(outcome("Tregold", DEAD, RIGID), worst=worst, file=file)
         assert found.verdict == "depends"
-        assert found.decides == ("where in their tolerances stiffness, damping and speed lie",)
+        assert found.decides == ("where in its tolerance stiffness lies",)
         assert found.over_tolerances == (
             "With stiffness ±10 %, speed ±2 %, force keeps its direction: unstable for some values at 200 to 290 rpm, "
-            "10 % of the speeds; between the values looked at, so that it is not known how fast.",
+            "10 % of the speeds; between the 0 values looked at, so that it is not known how fast; stable at 100 to "
+            "200, 290 to 1000 rpm.",
         )
         assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
 
@@ -120,13 +121,15 @@ class TestVerdict:
             (1.1, 0.8): (tongue(210, 290, 5.0), strong),
             (0.9, 0.8): (),
         }
-        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, points, ((20.0, 30.0),), ((20.0, 30.0),), ())}
+        worst = {DEAD: WorstCase(CASE_1.requirements.speeds, points, ((20.0, 30.0),), ((20.0, 30.0),))}
         file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1, damping=0.2))
         found = assessment(outcome("Tregold", DEAD, RIGID, tongue(200, 300)), worst=worst, file=file)
         said = f"flutter of the mean system, {strong.label} at 250 rpm, growing by 7.5 1/s"
         where = "with stiffness times 1.1, damping times 0.8"
         assert f"Worst: {said} ({DEAD}, tolerances; {where})." in found.headline
-        assert found.over_tolerances[0].endswith(f"; fastest of the values looked at: {said}, {where}.")
+        assert found.over_tolerances[0].count(
+            f"; fastest of the 3 values looked at: {said}, {where}; stable at "
+        )
         text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
         assert all(words in text for words in ("growth [1/s]", strong.label, "7.5"))
         table = (tmp_path / "tolerances.csv").read_text(encoding="utf-8-sig")
@@ -139,17 +142,18 @@ class TestVerdict:
     def test_tolerances_of_shafts_turn_torsion(self):
         swept = ((float(rad_per_s(600.0)), float(rad_per_s(690.0))),)
         speeds = CASE_1.requirements.speeds
-        worst = {TORSION: WorstCase(speeds, {}, swept, swept, ())}
+        worst = {TORSION: WorstCase(speeds, {}, swept, swept)}
         file = replace(CASE_1, tolerances=Tolerances(damping=0.2, shaft_stiffness=0.1))
         stable = {"Tregold, arm as printed": ()}
         found = assessment(outcome("Tregold", DEAD, RIGID), torsion=stable, worst=worst, file=file)
         assert (found.verdict, found.decides) == (
             "depends",
-            ("where in their tolerances stiffness, damping and speed lie",),
+            ("where in their tolerances damping of teeth and stiffness of shafts lie",),
         )
         assert found.over_tolerances == (
             "With damping of teeth ±20 %, stiffness of shafts ±10 %, torsion: unstable for some values at 600 to 690 "
-            "rpm, 10 % of the speeds; between the values looked at, so that it is not known how fast.",
+            "rpm, 10 % of the speeds; between the 0 values looked at, so that it is not known how fast; stable at 100 "
+            "to 600, 690 to 1000 rpm.",
         )
         assert told(found.always_stable) == "100 to 600, 690 to 1000 rpm"
 
@@ -168,18 +172,51 @@ class TestVerdict:
         file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1))
         at, around = (tuple(float(rad_per_s(x)) for x in part) for part in ((200.0, 290.0), (190.0, 300.0)))
         points = {(1.0, 1.0): (), (0.9, 1.0): (tongue(200, 290, 2.0),)}
-        worst = {DEAD: WorstCase(file.requirements.speeds, points, (at,), (around,), ())}
+        worst = {DEAD: WorstCase(file.requirements.speeds, points, (at,), (around,))}
         found = assessment(outcome("Tregold", DEAD, RIGID), worst=worst, file=file)
         assert told(found.always_stable) == "100 to 190, 300 to 1000 rpm"
         (said,) = found.over_tolerances
         assert "unstable for some values at 200 to 290 rpm, 10 % of the speeds" in said
-        assert "not known at 190 to 200, 290 to 300 rpm, where a tongue may come" in said
+        assert (
+            "not known at 190 to 200, 290 to 300 rpm, where something may be unstable between the 2 values"
+            in said
+        )
         nowhere = {DEAD: replace(worst[DEAD], points={}, swept=())}
         (said,) = replace(found, worst=nowhere).over_tolerances
         assert said.endswith(
-            "that stands at some of the values looked at only; stable elsewhere at all values looked at."
+            "where something may be unstable between the 0 values looked at; stable at 100 to 190, 300 to 1000 rpm."
         )
-        assert replace(found, worst=nowhere).verdict == "depends"
+        changed = replace(found, worst=nowhere)
+        assert changed.verdict == "depends"
+        # That it depends is not asserted.
+        not_known = "whether anything in the tolerance of stiffness is unstable, which is not known"
+        assert changed.decides == (not_known,)
+        assert changed.headline.startswith(f"Depends on {not_known}: ")
+        everywhere = replace(nowhere[DEAD], possible=(file.requirements.speeds,))
+        assert (
+            replace(found, worst={DEAD: everywhere})
+            .over_tolerances[0]
+            .endswith("; nowhere known to be stable.")
+        )
+
+    def test_a_tolerance_of_speed_that_alone_decides_is_named(self):
+        """A tongue that begins where the operating speeds end, at the stiffness and damping of the file already."""
+        beyond = (tongue(1005, 1015, 3.0),)
+        swept = tuple((t.lower, t.upper) for t in beyond)
+        file = replace(CASE_1, tolerances=Tolerances(stiffness=0.1, speed=0.02))
+        wide = file.tolerances.widened(file.requirements.speeds)
+        disk = {DEAD: WorstCase(wide, {(1.0, 1.0): beyond}, swept, swept)}
+        torsion = {"Tregold, arm as printed": beyond}
+        for parts in ({"worst": disk}, {"torsion": torsion}, {"worst": disk, "torsion": torsion}):
+            found = assessment(outcome("Tregold", DEAD, RIGID), file=file, **parts)
+            assert (found.verdict, found.decides) == (
+                "depends",
+                ("speeds beyond the operating ones, in their tolerance",),
+            )
+        # Where it takes both, both are named.
+        both = {DEAD: WorstCase(wide, {(1.0, 1.0): (), (0.9, 1.0): beyond}, swept, swept)}
+        found = assessment(outcome("Tregold", DEAD, RIGID), file=file, worst=both)
+        assert found.decides == ("where in their tolerances stiffness and speed lie",)
 
     def test_a_model_that_could_not_be_computed_is_counted_and_no_verdict_is_under_all(self, tmp_path):
         stable, unstable = outcome("Tregold", DEAD, RIGID), outcome("Tregold", DEAD, RIGID, tongue(200, 300))
@@ -378,6 +415,48 @@ def test_a_model_whose_computation_fails_is_among_those_that_failed():
         "depends",
         ("dynamic load of the teeth in torsion: the file has no section gearbox",),
     )
+
+
+class Recorder:
+    """Crew that only remembers what there is to do."""
+
+    def __init__(self):
+        self.added = []
+
+    def add(self, name, *work):
+        self.added.append(name)
+
+
+def test_a_main_model_that_cannot_be_computed_leaves_the_others_to_be():
+    said, crew = [], Recorder()
+    work = _Found(CASE_1, 0.02, 1, said.append)
+    number = len(work.cases)
+    for which in range(number):
+        work.take(crew, ("case", which), _Tried(None, "it does not converge"))
+    assert said[-1].startswith(f"case {number} of {number}: could not be computed (")
+    # Other teeth are tried all the same.
+    assert {name[1][0] for name in crew.added if name[0] == "teeth"} == set(range(number))
+    with pytest.raises(ArithmeticError, match=r"no model of the disk's motion could be computed: .*converge"):
+        work.assessment()
+    work.outcomes[0, 1] = outcome("Tregold", DEAD, RIGID_TOTAL)
+    work.others = {(0, 1): work.outcomes[0, 1].variant}
+    found = work.assessment()
+    assert found.verdict == "depends"
+    assert found.failed[0] == f"{work.cases[0].name}: it does not converge"
+    assert len(found.failed) == number
+
+
+def test_the_first_verdict_says_so_if_there_is_none(monkeypatch):
+    def fails(*args, **options):
+        raise ArithmeticError("it does not converge")
+
+    monkeypatch.setattr("facegear.drives.assess.tongues", fails)
+    said, crew = [], Recorder()
+    _Found(CASE_1, 0.02, 1, said.append).begin(crew)
+    assert said == [
+        "the drive as its file has it, in the basis of the file: it could not be computed (it does not converge)"
+    ]
+    assert ("case", 0) in crew.added
 
 
 @pytest.mark.slow

@@ -8,14 +8,8 @@ import pytest
 
 from facegear import floquet
 from facegear.floquet.loads import ContactLoad
-from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    AlignedStepwise,
-    Collocation,
-    Magnus,
-    Stepwise,
-    transition_matrix,
-)
+from facegear.floquet.methods import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus, Stepwise
+from facegear.floquet.multipliers import transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau

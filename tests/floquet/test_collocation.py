@@ -28,7 +28,8 @@ from facegear.floquet.collocation import chain, transition_matrices, transition_
 from facegear.floquet.columns import column_spectral_radii, family_spectral_radii, interpolated_spectral_radii
 from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.load_columns import LoadColumn
-from facegear.floquet.multipliers import AdaptiveMagnus, Collocation, multipliers
+from facegear.floquet.methods import AdaptiveMagnus, Collocation
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.multipliers import transition_matrices as by_method
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.stepping import Family

@@ -9,7 +9,7 @@ from scipy.optimize import fsolve
 from facegear.floquet.arc_length import Following
 from facegear.floquet.branches import Special
 from facegear.floquet.clearance import ClearanceSystem
-from facegear.floquet.contact_panels import Panels
+from facegear.floquet.contact_patterns import Panels
 from facegear.floquet.continuation import doubled, followed, orbits_at
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.orbits import periodic_orbit

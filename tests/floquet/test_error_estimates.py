@@ -6,16 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from facegear.floquet.error_estimates import error_estimate, multiplier_errors
+from facegear.floquet.methods import AdaptiveMagnus, Magnus, Stepwise, with_method
 from facegear.floquet.multiplier_curves import MultiplierCurve
-from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    Magnus,
-    Stepwise,
-    error_estimate,
-    multiplier_errors,
-    multipliers,
-    with_method,
-)
+from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.radau import Radau
 from facegear.maps.stability_map import stability_map

@@ -5,18 +5,11 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from facegear.floquet import multipliers as module
+from facegear.floquet import error_estimates as module
+from facegear.floquet.error_estimates import error_estimate, multiplier_errors
 from facegear.floquet.free_modes import UnsuitableSystemError
-from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    AlignedStepwise,
-    Collocation,
-    Magnus,
-    error_estimate,
-    multiplier_errors,
-    multipliers,
-    transition_matrix,
-)
+from facegear.floquet.methods import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus
+from facegear.floquet.multipliers import multipliers, transition_matrix
 from facegear.floquet.radau import Radau
 from facegear.floquet.stepping import Family
 from facegear.floquet.taylor import Taylor

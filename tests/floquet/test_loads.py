@@ -8,18 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from facegear.floquet.error_estimates import error_estimate
 from facegear.floquet.loads import ContactLoad, StateJump
-from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    AlignedStepwise,
-    Collocation,
-    Magnus,
-    Stepwise,
-    error_estimate,
-    growth_rate,
-    multipliers,
-    transition_matrix,
-)
+from facegear.floquet.methods import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus, Stepwise
+from facegear.floquet.multipliers import growth_rate, multipliers, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau

@@ -11,8 +11,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from facegear.floquet import stepping
+from facegear.floquet.error_estimates import error_estimate
 from facegear.floquet.loads import ContactLoad
-from facegear.floquet.multipliers import (
+from facegear.floquet.methods import (
     FIRST,
     GENERAL,
     AdaptiveMagnus,
@@ -20,13 +21,9 @@ from facegear.floquet.multipliers import (
     Collocation,
     Magnus,
     Stepwise,
-    error_estimate,
-    growth_rate,
-    multipliers,
-    transition_matrices,
-    transition_matrix,
     with_method,
 )
+from facegear.floquet.multipliers import growth_rate, multipliers, transition_matrices, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq, fsolve
 
 from facegear.floquet.clearance import ClearanceSystem
-from facegear.floquet.contact_panels import Panels
+from facegear.floquet.contact_patterns import Panels
 from facegear.floquet.loads import ContactLoad, StateJump
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.orbits import periodic_orbit

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
+from facegear.floquet.fourier import fourier_series
 from facegear.floquet.loads import ContactLoad, StateJump
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.piecewise import PiecewiseChebyshev, fourier_series, merge_breakpoints
+from facegear.floquet.piecewise import PiecewiseChebyshev, merge_breakpoints
 
 KINKS = np.array([0.1, 0.55, 0.7])
 ONE = PiecewiseChebyshev.constant([1.0])

@@ -11,8 +11,9 @@ from facegear.floquet import collocation
 from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.labels import Resonance, resonance
 from facegear.floquet.loads import ContactLoad, StateJump
+from facegear.floquet.methods import AdaptiveMagnus, Collocation
 from facegear.floquet.modified_models import Excited
-from facegear.floquet.multipliers import AdaptiveMagnus, Collocation, growth_rate
+from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau

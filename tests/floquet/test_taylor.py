@@ -8,7 +8,8 @@ import pytest
 from facegear.floquet import taylor
 from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.loads import ContactLoad, StateJump
-from facegear.floquet.multipliers import AdaptiveMagnus, transition_matrices
+from facegear.floquet.methods import AdaptiveMagnus
+from facegear.floquet.multipliers import transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.stepping import Family

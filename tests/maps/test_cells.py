@@ -7,8 +7,9 @@ import pytest
 
 from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.loads import ContactLoad
+from facegear.floquet.methods import AdaptiveMagnus
 from facegear.floquet.models import replace_parameter
-from facegear.floquet.multipliers import AdaptiveMagnus, growth_rate
+from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps import cells as module

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from facegear.floquet.multipliers import Collocation, growth_rate
+from facegear.floquet.methods import Collocation
+from facegear.floquet.multipliers import growth_rate
 from facegear.maps.peaks import growth_peak
 from facegear.mechanics.classical import Mathieu
 

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh_tridiagonal
 
+from facegear.floquet.methods import Magnus
 from facegear.floquet.models import replace_parameter
-from facegear.floquet.multipliers import Magnus, growth_rate, multipliers, transition_matrix
+from facegear.floquet.multipliers import growth_rate, multipliers, transition_matrix
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.geometry.drive import Drive
 from facegear.maps.sensitivity import (

@@ -13,8 +13,9 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from benchmarks.synthetic_disk import contact_shape, disk_matrices
 from facegear.floquet.loads import ContactLoad
+from facegear.floquet.methods import AdaptiveMagnus, Stepwise
 from facegear.floquet.models import replace_parameter
-from facegear.floquet.multipliers import AdaptiveMagnus, Stepwise, growth_rate
+from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive

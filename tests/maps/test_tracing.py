@@ -415,7 +415,8 @@ def test_cost_grows_with_size_and_range():
         Body(Drive(26, 130, 3.175e-3), 0.03, nodal_circles=2, nodal_diameters=6), MeshLoad(1.0, 3e-6, 1.0)
     )
     ends = [float(rad_per_s(speed)) for speed in (400.0, 600.0)]
-    assert search_seconds(small, ends) < 1.0 < 3.0 < search_seconds(large, ends) < 60.0
+    # Measured on a busy machine: 0.1 and 0.8 s.
+    assert 0.03 < search_seconds(small, ends) < 0.3 < search_seconds(large, ends) < 2.4
     assert search_seconds(small, (ends[0] / 4.0, ends[1])) > search_seconds(small, ends)
     with pytest.raises(ValueError, match="speeds must ascend"):
         search_seconds(small, ends[::-1])

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from facegear.floquet import methods
 from facegear.floquet import multipliers as floquet
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.mechanics import classical, classical_pairs
@@ -65,7 +66,7 @@ def test_natural_frequency_only_scales_time():
 def test_meissner_trace_in_closed_form(frequency, depth, duty, damping_ratio):
     system = classical.Meissner(depth, duty, damping_ratio).system(frequency)
     # Constant in each of two pieces: one exponential a piece is exact.
-    matrix = floquet.transition_matrix(system, floquet.AlignedStepwise(2))
+    matrix = floquet.transition_matrix(system, methods.AlignedStepwise(2))
     expected = classical.meissner_trace(frequency, depth, duty, damping_ratio)
     assert np.trace(matrix) == pytest.approx(float(expected), rel=1e-11, abs=1e-11)
 

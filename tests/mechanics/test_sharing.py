@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import facegear as fg
+from facegear.floquet.fourier import fourier_series
 from facegear.floquet.multipliers import multipliers
-from facegear.floquet.piecewise import fourier_series
 from facegear.geometry.kinematics import CentroidPath
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.sharing import RULES, shared_load

@@ -10,14 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.polynomial import Chebyshev
 
-from facegear.floquet.multipliers import (
-    AdaptiveMagnus,
-    error_estimate,
-    growth_rate,
-    multipliers,
-    transition_matrix,
-)
-from facegear.floquet.piecewise import fourier_series
+from facegear.floquet.error_estimates import error_estimate
+from facegear.floquet.fourier import fourier_series
+from facegear.floquet.methods import AdaptiveMagnus
+from facegear.floquet.multipliers import growth_rate, multipliers, transition_matrix
 from facegear.geometry.drive import Drive
 from facegear.geometry.kinematics import CentroidPath, ContactPath
 from facegear.maps.stability_map import stability_map

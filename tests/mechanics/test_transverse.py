@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.optimize import linear_sum_assignment
 
+from facegear.floquet import methods
 from facegear.floquet import multipliers as floquet
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
@@ -371,7 +372,7 @@ class TestTransverse:
         direct = shape_vector(body, centroid.radius, centroid.angle)
         np.testing.assert_allclose(few.shapes[0](x), direct, rtol=0, atol=1e-9 * np.abs(direct).max())
         system = few.system(55.0)
-        by_magnus = growth_rate(system, floquet.AdaptiveMagnus(1e-10))
+        by_magnus = growth_rate(system, methods.AdaptiveMagnus(1e-10))
         assert growth_rate(system) == pytest.approx(by_magnus, abs=1e-6)
         with pytest.raises(ValueError, match="pinion_teeth = 20 is too few for rate = 'total'"):
             replace(few, contact=Contact(rate="total"))

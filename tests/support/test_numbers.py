@@ -16,8 +16,8 @@ from facegear.design.body import Requirements
 from facegear.drives.studies.study import Quantity
 from facegear.floquet.columns import column_spectral_radii
 from facegear.floquet.loads import ContactLoad
+from facegear.floquet.methods import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus, Stepwise
 from facegear.floquet.models import is_part
-from facegear.floquet.multipliers import AdaptiveMagnus, AlignedStepwise, Collocation, Magnus, Stepwise
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau

@@ -57,9 +57,9 @@ def test_index_leads_to_labels_and_else_to_captions(tmp_path, listed):
     lines = pages.figure_index(listed, [path]).splitlines()
     assert "| 4.4 | Stability of Case I | {numref}`fig-4-4` |" in lines
     assert "| 4.5 | Stability of Case II | {numref}`fig-b` |" in lines
-    assert "| 4.6 | Steps (drawing) | A flow chart. |" in lines
+    assert "| 4.6 | Steps (drawing) | not drawn: a flow chart. |" in lines
     assert "| 5.5 | Stability over an angle | its chapter is not in the book yet |" in lines
-    assert "| 1.1 to 1.2 | One gearbox; Another gearbox (drawing) | A photograph. |" in lines
+    assert "| 1.1 to 1.2 | One gearbox; Another gearbox (drawing) | not drawn: a photograph. |" in lines
     assert any("2 of 3" in line for line in lines)
 
 
@@ -151,13 +151,17 @@ def test_caption_that_offers_numbers_itself_and_cells_without_figure_are_left_al
     ("written", "read"),
     [
         ("off by 1.6e-06 of it", "off by 1.6·10⁻⁶ of it"),
-        ("1e-12; -2.5e+08 N/m", "10⁻¹²; -2.5·10⁸ N/m"),
+        ("1e-12; -2.5e+08 N/m", "10⁻¹²; −2.5·10⁸ N/m"),
         ("| 1.047e+04 | 5.6e-04 | 3e-2 |", "| 10470 | 0.00056 | 0.03 |"),
         ("$k_m$ = 1.5763e+08 N/m", "$k_m$ = 1.5763·10⁸ N/m"),
         ("$k = 1.5e+08$", r"$k = 1.5\cdot 10^{8}$"),
         ("`rtol=1e-9` and\n```python\nx = 1e-9\n```", "`rtol=1e-9` and\n```python\nx = 1e-9\n```"),
-        ("| -0.00 | −0 | -0.05 | 3-0 |", "| 0.00 | 0 | -0.05 | 3-0 |"),
+        ("| -0.00 | −0 | -0.05 | 3-0 |", "| 0.00 | 0 | −0.05 | 3-0 |"),
         ("module_1e5 and 2.1e", "module_1e5 and 2.1e"),
+        ("from -1.7 to -0.7 %, (-5), +-2", "from −1.7 to −0.7 %, (−5), +−2"),
+        ("-2.05-1670.86i; 2026-11-30; (7-2)", "−2.05−1670.86i; 2026-11-30; (7-2)"),
+        ('<p style="margin:-1px"> -1 < 2</p>', '<p style="margin:-1px"> −1 < 2</p>'),
+        ("|--:|---|\n| -1 | $-1$ |", "|--:|---|\n| −1 | $-1$ |"),
     ],
 )
 def test_numbers_are_put_in_a_readers_digits(written, read):
@@ -168,8 +172,11 @@ def test_outputs_are_put_in_a_readers_digits_and_what_code_prints_is_not():
     cell = nbformat.v4.new_code_cell("1e-9")
     table = nbformat.v4.new_output("display_data", {"text/markdown": "| 1e-9 |", "text/plain": "1e-9"})
     quoted = nbformat.v4.new_output("display_data", {"application/papermill.record/text/plain": "'2e-9'"})
-    cell.outputs = [table, quoted, nbformat.v4.new_output("stream", name="stdout", text="1e-9")]
+    html = nbformat.v4.new_output("display_data", {"text/html": "<td class=x>-3.0</td><b>-3</b>"})
+    printed = nbformat.v4.new_output("stream", name="stdout", text="1e-9")
+    cell.outputs = [table, quoted, printed, html]
     pages.put_outputs_in_readers_digits(cell)
     assert cell.outputs[0].data == {"text/markdown": "| 10⁻⁹ |", "text/plain": "1e-9"}
     assert cell.outputs[1].data == {"application/papermill.record/text/plain": "'2·10⁻⁹'"}
     assert cell.outputs[2].text == "1e-9"
+    assert cell.outputs[3].data == {"text/html": "<td class=x>−3.0</td><b>-3</b>"}

@@ -50,7 +50,7 @@ def test_a_copied_example_brings_all_its_names_along(name):
 
 
 def test_name_is_followed_from_its_module_on():
-    assert found("facegear.floquet.multipliers.with_method")[-1] is not None
+    assert found("facegear.floquet.methods.with_method")[-1] is not None
     assert found("facegear.floquet.periodic.PeriodicSystem.fourier")[-1] is fg.PeriodicSystem.fourier
     assert found("facegear.mechanics.properties.MeshLoad.stiffness")  # a field without default
     assert found("facegear.floquet.multipliers.no_such_method") == []
@@ -68,7 +68,7 @@ def test_short_name_is_looked_for_in_the_class_and_in_the_module_of_its_docstrin
 
 def test_public_object_is_known_by_where_it_is_defined_too():
     assert public_name(found("facegear.maps.stability_map.stability_map")[-1]) == "stability_map"
-    assert public_name(found("facegear.floquet.multipliers.with_method")[-1]) == ""
+    assert public_name(found("facegear.floquet.methods.with_method")[-1]) == ""
 
 
 def outside_names():

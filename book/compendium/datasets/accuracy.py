@@ -10,7 +10,9 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import solve_ivp
 
+from facegear.floquet import error_estimates
 from facegear.floquet import multipliers as floquet
+from facegear.floquet.methods import AlignedStepwise, Collocation, Magnus, Method, Stepwise
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.support.labelled import text, variable
 from facegear.support.types import FloatArray
@@ -68,20 +70,20 @@ def convergence(system: PeriodicSystem, sub_intervals: Sequence[int], descriptio
     """
     truth = integrated_transition_matrix(system)
 
-    def error(method: floquet.Method) -> float:
+    def error(method: Method) -> float:
         wrong = floquet.transition_matrix(system, method) - truth
         return float(np.abs(wrong).max() / np.abs(truth).max())
 
-    methods: dict[str, tuple[Callable[[int], floquet.Method], str]] = {
-        "uniform": (floquet.Stepwise, "Stepwise, equal sub-intervals (2-11)"),
-        "aligned": (floquet.AlignedStepwise, "Stepwise, aligned sub-intervals"),
-        "magnus": (floquet.Magnus, "Magnus, aligned sub-intervals"),
+    methods: dict[str, tuple[Callable[[int], Method], str]] = {
+        "uniform": (Stepwise, "Stepwise, equal sub-intervals (2-11)"),
+        "aligned": (AlignedStepwise, "Stepwise, aligned sub-intervals"),
+        "magnus": (Magnus, "Magnus, aligned sub-intervals"),
     }
     arrays = {
         name: _error("sub_intervals", [error(method(int(q))) for q in sub_intervals], sentence)
         for name, (method, sentence) in methods.items()
     }
-    arrays["collocation"] = _error((), error(floquet.Collocation()), "Contact-force collocation")
+    arrays["collocation"] = _error((), error(Collocation()), "Contact-force collocation")
     return xr.Dataset(
         arrays, coords={"sub_intervals": list(sub_intervals)}, attrs={"parameters": description}
     )
@@ -109,8 +111,8 @@ def doubling(system: PeriodicSystem, first: int, doublings: int, description: st
     truth = integrated_transition_matrix(system)
     size = np.abs(truth).max()
     counts = [first * 2**k for k in range(doublings + 1)]
-    matrices = np.array([floquet.transition_matrix(system, floquet.Stepwise(q)) for q in counts])
-    aligned = np.array([floquet.transition_matrix(system, floquet.AlignedStepwise(q)) for q in counts])
+    matrices = np.array([floquet.transition_matrix(system, Stepwise(q)) for q in counts])
+    aligned = np.array([floquet.transition_matrix(system, AlignedStepwise(q)) for q in counts])
     change = np.abs(np.diff(matrices, axis=0)).max(axis=(1, 2)) / size
     return xr.Dataset(
         {
@@ -125,9 +127,7 @@ def doubling(system: PeriodicSystem, first: int, doublings: int, description: st
     )
 
 
-def estimates(
-    system: PeriodicSystem, methods: Sequence[tuple[str, floquet.Method]], description: str
-) -> xr.Dataset:
+def estimates(system: PeriodicSystem, methods: Sequence[tuple[str, Method]], description: str) -> xr.Dataset:
     """Error estimate of the spectral radius beside its true error, for several methods.
 
     Parameters
@@ -149,7 +149,9 @@ def estimates(
     return xr.Dataset(
         {
             "estimate": _error(
-                "case", [floquet.error_estimate(system, method) for _, method in methods], "Error estimate"
+                "case",
+                [error_estimates.error_estimate(system, method) for _, method in methods],
+                "Error estimate",
             ),
             "error": _error("case", np.abs(np.array(found) - radius), "True error of the spectral radius"),
         },

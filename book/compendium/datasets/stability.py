@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
+from facegear.floquet import methods
 from facegear.floquet import multipliers as floquet
 from facegear.floquet.columns import family_spectral_radii
 from facegear.floquet.hsu import ResonanceBand, resonance_bands
@@ -279,7 +280,7 @@ def duty_chart(frequencies: ArrayLike, duties: ArrayLike, depth: float) -> xr.Da
     # Along the frequency, for along the duty the jumps move. Two pieces of constant stiffness: one exponential each is
     # exact.
     rows = [
-        family_spectral_radii(classical.Meissner(depth, duty).system, speeds, floquet.AlignedStepwise(2))
+        family_spectral_radii(classical.Meissner(depth, duty).system, speeds, methods.AlignedStepwise(2))
         for duty in finite_array("duties", duties)
     ]
     return xr.Dataset(

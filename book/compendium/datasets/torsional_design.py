@@ -11,8 +11,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.modulation import describe, relative_modulation
+from facegear.floquet.methods import AdaptiveMagnus
 from facegear.floquet.models import Model, replace_parameter, value_of
-from facegear.floquet.multipliers import AdaptiveMagnus
 from facegear.floquet.radau import Radau
 from facegear.geometry.kinematics import CentroidPath, ContactPath
 from facegear.maps.closing import GrowthPeaks, growth_peaks

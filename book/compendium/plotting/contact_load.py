@@ -172,6 +172,16 @@ def unstable_shares(data: xr.Dataset, torques: Sequence[float], rated: float, ca
             )
         ax.axvline(rated, color=GREY, linewidth=0.8, linestyle=":")
         ax.set(xscale="log", xlabel="torque at the pinion [N m]", title=title)
+        lines = [k for k, name in enumerate(names) if name.split()[0] in ("slice", "pair", "plate")]
+        if not share.values[lines].any():
+            ax.annotate(
+                "all zero",
+                (0.5, 0.0),
+                (0, 8),
+                xycoords=("axes fraction", "data"),
+                textcoords="offset points",
+                ha="center",
+            )
     axes[0].set_ylabel("unstable cells of the map [%]")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2)

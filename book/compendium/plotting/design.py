@@ -248,7 +248,13 @@ def trade_off(data: xr.Dataset, allowable: float) -> Figure:
     """
     figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
     ax = figure.subplots()
-    for (colour, marker), highest in zip(_RANGES, data["highest_rpm"].values, strict=True):
+    # Names of the left line stand on its left, those of the right one on its right.
+    beside: tuple[dict[str, Any], ...] = (
+        {"xytext": (-6, -5), "ha": "right", "va": "top"},
+        {"xytext": (6, 5), "ha": "left", "va": "bottom"},
+    )
+    lines = zip(_RANGES, data["highest_rpm"].values, beside, strict=True)
+    for (colour, marker), highest, side in lines:
         part = data.sel(highest_rpm=highest)
         thickness, stress = part["critical_thickness"] * 1e3, part["root_stress"] / 1e6
         ax.plot(
@@ -265,11 +271,11 @@ def trade_off(data: xr.Dataset, allowable: float) -> Figure:
                 ax.annotate(
                     f"{teeth}",
                     (float(thickness.sel(pinion_teeth=teeth)), float(stress.sel(pinion_teeth=teeth))),
-                    xytext=(6, 5),
                     textcoords="offset points",
                     fontsize=8,
                     color=colour,
                     bbox=_PAPER,
+                    **side,
                     zorder=1.5,  # below the points and lines, so that it hides none
                 )
     ax.axhline(allowable / 1e6, color=INK, linestyle=":", linewidth=1.6, label=r"$\sigma_Y/SF$")

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from facegear.plotting.style import (
     BLUE,
     GREEN,
+    GREY,
     INK,
     ORANGE,
     VERMILION,
@@ -18,15 +21,31 @@ from facegear.plotting.style import (
     panels,
     styled,
 )
+from facegear.support.types import FloatArray
 
 _SPEED = "speed of the face gear [rpm]"
+
+
+def _blocks(value: FloatArray) -> list[slice]:
+    """Return the runs of rows without a gap of more than twice the usual step."""
+    steps = np.diff(value)
+    ends = [0, *(np.flatnonzero(steps > 2.0 * np.median(steps)) + 1).tolist(), value.size]
+    return [slice(first, last) for first, last in pairwise(ends)]
+
+
+def _hatch_gaps(ax: Axes, value: FloatArray) -> None:
+    """Hatch what lies between the blocks, by half a step off their last rows."""
+    half = 0.5 * float(np.median(np.diff(value)))
+    for before, after in pairwise(_blocks(value)):
+        ends = value[before][-1] + half, value[after][0] - half
+        ax.axhspan(*ends, facecolor="none", edgecolor=GREY, hatch="///", linewidth=0.0)
 
 
 @styled
 def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int = 3) -> Figure:
     """Draw maps of several models on one scale of colours, each with the unstable share of its cells.
 
-    `label` and `scale` are those of the parameter.
+    `label` and `scale` are those of the parameter. Where its values leave a gap, nothing is coloured but hatched.
     """
     names = data.model_name.values.tolist()
     rows = -(-len(names) // columns)
@@ -35,7 +54,9 @@ def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int =
     speed, value = data.speed.values, data.value.values * scale
     for place, (ax, name) in enumerate(zip(axes, names, strict=False)):
         growth = data.growth_rate.isel(model=place).values
-        mesh = draw_unstable(ax, speed, value, growth, largest)
+        for rows_of_block in _blocks(value):
+            mesh = draw_unstable(ax, speed, value[rows_of_block], growth[rows_of_block], largest)
+        _hatch_gaps(ax, value)
         ax.set_title(name, loc="left", fontsize=9)
         # A single cell cannot be seen: the number says whether there is one.
         ax.set_title(f"{100 * (growth > 0.0).mean():.2g} %", loc="right", fontsize=9)

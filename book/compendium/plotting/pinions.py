@@ -71,6 +71,8 @@ def _draw_names(ax: Axes, traced: xr.Dataset, apart: float) -> None:
             if low + apart / 2 < place < high - apart / 2 and free:
                 break
         taken.append((speed, place))
+        if abs(place - height) > 0.7 * apart:
+            ax.plot([speed, speed], [height, place], color=GREY, linewidth=0.7)
         ax.text(speed, place, label, ha="center", va="center", fontsize=8, color=INK, bbox=_BOX)
 
 

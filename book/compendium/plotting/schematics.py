@@ -124,22 +124,15 @@ def shaper_profile(drive: Drive, outline: FloatArray, flank: FloatArray, step: i
     _bare(axes)
     axes.fill(*(outline.T * _MM), facecolor=STEEL, edgecolor=GREY, linewidth=0.9, alpha=0.7)
     base, half = drive.base_radius * _MM, drive.space_half_angle
-    span = (-np.pi / 2 - 0.36, -np.pi / 2 + 0.62)
+    right = 0.62 * base  # where the drawing ends, and the names of the circles begin
     for radius, name in (
         (drive.base_radius, "base circle $r_{bs}$"),
         (drive.pitch_radius, "pitch circle $r_p$"),
         (drive.pinion_tip_radius, "tip circle"),
     ):
+        span = (-np.pi / 2 - 0.36, -np.pi / 2 + float(np.arcsin(right / (radius * _MM))))
         _circle(axes, radius * _MM, span, color=GREY, linewidth=0.8, linestyle=(0, (6, 3)))
-        axes.text(
-            radius * _MM * np.cos(span[1]),
-            radius * _MM * np.sin(span[1]),
-            f" {name}",
-            va="center",
-            color=INK,
-            fontsize=10,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.8},
-        )
+        axes.text(right, radius * _MM * np.sin(span[1]), f" {name}", va="center", color=INK, fontsize=10)
     axes.plot(*(flank.T * _MM), color=BLUE, linewidth=2.4)
     # The string that unwinds from the base circle: its length is r_bs θs, its end the point.
     tangent = base * np.array([np.sin(half + roll), -np.cos(half + roll)])
@@ -162,7 +155,7 @@ def shaper_profile(drive: Drive, outline: FloatArray, flank: FloatArray, step: i
     axes.text(0.32 * base, 0, "$x_s$", va="center")
     axes.text(0, 0.33 * base, "$y_s$", ha="center")
     axes.plot([0, 0], [0, -1.13 * base], color=INK, linewidth=0.9, linestyle=(0, (9, 3, 2, 3)))
-    axes.set_xlim(-0.62 * base, 1.0 * base)
+    axes.set_xlim(-right, right)
     axes.set_ylim(-1.2 * base, 0.42 * base)
     return figure
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from facegear.plotting.style import (
     BLUE,
@@ -40,6 +41,7 @@ def contact_ratio_after_tregold(ratios: xr.Dataset, marked: Sequence[int]) -> Fi
     for teeth, ratio in zip(chosen.pinion_teeth.values, chosen.contact_ratio.values, strict=True):
         label_line(axes, f"{ratio:.4f}", (teeth, ratio), (6, -22))
     axes.set(xlabel="number of pinion teeth $N_1$", ylabel="contact ratio $c_r$")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     return figure
 
 

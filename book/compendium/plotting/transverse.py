@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from facegear.plotting.style import (
     BLUE,
     GREEN,
+    GREY,
     INK,
     ORANGE,
     VERMILION,
@@ -83,6 +84,8 @@ def _draw_sections(ax: Axes, chart: xr.Dataset) -> None:
             continue
         place = free[0]
         taken.append((speed, place))
+        if abs(place - height) > 0.06 * top:
+            ax.plot([speed, speed], [height, place], color=GREY, linewidth=0.7)
         ax.text(
             speed,
             place,

@@ -5,7 +5,7 @@ import pytest
 
 from compendium import reference
 from compendium.datasets import accuracy as accuracy_arrays
-from facegear.floquet import multipliers as floquet
+from facegear.floquet.methods import AlignedStepwise, Magnus, Stepwise
 from facegear.mechanics import classical_pairs
 from facegear.support import labelled
 from tests.independent import classical as independent
@@ -18,7 +18,7 @@ GEARS = classical_pairs.GearPair(1.563, droop=0.4, shaft_damping=0.02).system(1.
     [
         lambda: accuracy_arrays.convergence(GEARS, [8, 16], "gears"),
         lambda: accuracy_arrays.doubling(GEARS, 16, 2, "gears"),
-        lambda: accuracy_arrays.estimates(GEARS, [("magnus", floquet.Magnus(16))], "gears"),
+        lambda: accuracy_arrays.estimates(GEARS, [("magnus", Magnus(16))], "gears"),
     ],
     ids=["convergence", "doubling", "estimates"],
 )
@@ -57,7 +57,7 @@ def test_doubling_repeats_the_trap_at_nine_sixteenths():
 
 
 def test_estimates_are_not_below_the_true_errors():
-    methods = [("aligned", floquet.AlignedStepwise(32)), ("uniform", floquet.Stepwise(512))]
+    methods = [("aligned", AlignedStepwise(32)), ("uniform", Stepwise(512))]
     data = accuracy_arrays.estimates(GEARS, methods, "gears")
     assert (data.estimate.values >= data.error.values).all()
     assert data["method"].values.tolist() == ["aligned", "uniform"]

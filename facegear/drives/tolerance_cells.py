@@ -1,0 +1,330 @@
+"""Search in a box of stiffness and damping, by cells.
+
+Values of stiffness are not drawn. Their box is divided into cells, and tongues are traced at the corners of each, for
+both ends of every damping. Natural frequencies rise with every stiffness, and so a tongue that stands at all corners of
+a cell has swept all speeds between. A tongue can also stand at some corners only, or inside the cell alone, where a
+resonance is better tuned. So at each corner a drive with half the damping is looked at as well: what could open nearby
+stands there already, and where it does the cell is halved until it is small. What cannot be told then is left open.
+Tongues are looked for in a wider range of speed, wide enough that none can come into the range from outside unseen.
+"""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations, count, product
+from typing import Any
+
+from facegear.drives.intervals import cut, gaps, united
+from facegear.floquet.models import Model
+from facegear.maps.tracing import Tongue, search_seconds, tongues
+
+# Ratio of the largest and the smallest stiffness of a cell above which it is halved in any case.
+_COARSE = 1.25
+FINE = 1.025
+"""Ratio of the largest and the smallest stiffness of a cell that is not halved any more."""
+
+# Where two resonances share a mode their strengths add: two of the first kind that may meet inside a fine cell count as
+# one of the second.
+HALF, MOST = 0.5, 0.8
+"""Parts of the damping with which what could open inside a cell stands at a corner: of any cell, so that the strength
+of a resonance may double from there, and of a fine one."""
+
+# Work spent on halves of what is coarse no more, as `search_seconds` has it: alike on every machine.
+_SECONDS = 12.0
+# Part by which the search goes beyond the speeds from which tongues can come, for what of a frequency no spring makes.
+_MARGIN = 1.02
+# Growth in a period from which a speed counts as unstable where that of other searches cannot be told.
+_ROUGH = 1e-7
+
+Factors = tuple[float, ...]
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Part of a box: lower and upper factors of each stiffness, and the speeds at which it is looked at [rad/s]."""
+
+    lower: Factors
+    upper: Factors
+    speeds: Range
+
+    @property
+    def reach(self) -> float:
+        """Ratio by which natural frequencies can differ at most: the root of that of the stiffness."""
+        return math.sqrt(self._ratio)
+
+    @property
+    def _ratio(self) -> float:
+        return max(high / low for low, high in zip(self.lower, self.upper, strict=True))
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether it has to be halved: too large, or with the values of the file inside."""
+        inside = any(low < 1.0 < high for low, high in zip(self.lower, self.upper, strict=True))
+        return inside or self._ratio > _COARSE
+
+    @property
+    def is_fine(self) -> bool:
+        """Whether it is not halved any more."""
+        return self._ratio < FINE
+
+    @property
+    def around(self) -> Range:
+        """Speeds from which a tongue can come into those of the cell."""
+        wider = 1.0 if self.lower == self.upper else _MARGIN * self.reach
+        return self.speeds[0] / wider, self.speeds[1] * wider
+
+    @property
+    def corners(self) -> list[Factors]:
+        """Factors at the corners."""
+        return list(product(*(sorted({*ends}) for ends in zip(self.lower, self.upper, strict=True))))
+
+    def halves(self) -> tuple[Cell, Cell]:
+        """Both halves along the longest edge: at the value of the file, where that is inside."""
+        ends = list(zip(self.lower, self.upper, strict=True))
+        longest = max(range(len(ends)), key=lambda place: ends[place][1] / ends[place][0])
+        low, high = ends[longest]
+        middle = 1.0 if low < 1.0 < high else math.sqrt(low * high)
+        upper, lower = (
+            tuple(middle if place == longest else value for place, value in enumerate(corner))
+            for corner in (self.upper, self.lower)
+        )
+        return replace(self, upper=upper), replace(self, lower=lower)
+
+    def reached(self, tongue: Tongue) -> Range:
+        """Where a tongue of a corner can come inside the cell."""
+        return tongue.lower / self.reach, tongue.upper * self.reach
+
+
+@dataclass(frozen=True)
+class _Corner:
+    """What stands in a range of speed at one value of each stiffness.
+
+    Tongues by the factors of stiffness and damping, one for each corner of the dampings; of these the ones with the
+    least damping; and those that stand with half of that alone.
+    """
+
+    around: Range
+    found: dict[Factors, tuple[Tongue, ...]]
+    least: tuple[Tongue, ...]
+    weak: tuple[Tongue, ...]
+
+
+@dataclass(frozen=True)
+class _Judged:
+    """What corners tell of a cell: intervals of speed [rad/s].
+
+    Such as are swept, such as may be unstable, and those that a tongue may reach which stands at some corners only, or
+    at one of them with half the damping alone.
+    """
+
+    swept: list[Range]
+    possible: list[Range]
+    open: list[Range]
+    weak: list[Range]
+
+
+@dataclass
+class BoxSearch:
+    """Search for tongues anywhere in a box.
+
+    Parameters
+    ----------
+    model : Model
+        With a field NAME_factor for each part.
+    parts : mapping of str to float
+        How far each may be from 1 to both sides, by its name in words, which ends in "stiffness" or "damping".
+    wide : tuple of float
+        Range of speed [rad/s].
+
+    Attributes
+    ----------
+    points : dict of tuple of float to tuple of Tongue
+        Tongues by factors, in the order of `parts`, the values of the file first: where there are none, only if the
+        whole range was looked at.
+    swept, possible : list of tuple of float
+        Intervals of speed [rad/s], in no order, with some value that is unstable, and in which there may be one.
+    """
+
+    model: Any
+    parts: Mapping[str, float]
+    wide: Range
+    points: dict[Factors, tuple[Tongue, ...]] = field(default_factory=dict)
+    swept: list[Range] = field(default_factory=list)
+    possible: list[Range] = field(default_factory=list)
+    _seconds: float = 0.0
+    _corners: dict[Factors, list[_Corner]] = field(default_factory=dict)
+
+    def run(self) -> None:
+        """Look at cells until all is settled, or no more work is allowed."""
+        nominal = (1.0,) * len(self.parts)
+        own = self.points[nominal] = self._tongues(nominal, self.wide)
+        self.swept += [(tongue.lower, tongue.upper) for tongue in own]
+        self.possible += self.swept
+        cells = [Cell(*self._ends(is_stiffness), self.wide)]
+        while any(cell.is_coarse for cell in cells):
+            cells = [part for cell in cells for part in (cell.halves() if cell.is_coarse else (cell,))]
+        finer = [half for cell in cells for half in self._halves(cell)]
+        self._seconds = 0.0
+        # The largest first: what is left at the end is small.
+        number = count()
+        queue = [(-cell.reach, next(number), cell) for cell in finer]
+        heapq.heapify(queue)
+        while queue and self._seconds < _SECONDS:
+            *_, cell = heapq.heappop(queue)
+            for half in () if self._is_known(cell) else self._halves(cell):
+                heapq.heappush(queue, (-half.reach, next(number), half))
+        self.possible += [cell.speeds for *_, cell in queue]
+
+    def _is_known(self, cell: Cell) -> bool:
+        """Whether all speeds of a cell are swept, and it is known how fast something grows at some of them."""
+        return not gaps(united(self.swept), cell.speeds) and any(
+            _stands(tongue, cell.speeds) for found in self.points.values() for tongue in found
+        )
+
+    def _halves(self, cell: Cell) -> list[Cell]:
+        """Look at a cell, keep what it tells, and return halves where they could tell more."""
+        corners = [self._corner(springs, cell.around) for springs in cell.corners]
+        judged = _judged(cell, corners)
+        self.swept += judged.swept
+        self.possible += judged.possible
+        if cell.is_fine:
+            self.possible += [*judged.open, *self._left(cell, corners)]
+            return []
+        unsettled = cut(united([*judged.open, *judged.weak]), cell.speeds)
+        return [half for speeds in unsettled for half in replace(cell, speeds=speeds).halves()]
+
+    def _left(self, cell: Cell, corners: Sequence[_Corner]) -> list[Range]:
+        """Where something may open inside a fine cell that stands at no corner of it."""
+        if cell.reach == 1.0:
+            return []
+        found: list[Range] = []
+        for springs, corner in zip(cell.corners, corners, strict=True):
+            if any(cut([cell.reached(tongue)], cell.speeds) for tongue in corner.weak):
+                found += map(cell.reached, self._weak(springs, cell.around, corner.least, MOST))
+        weak = {tongue.label for corner in corners for tongue in corner.weak}
+        places = _places(cell, [(*corner.least, *corner.weak) for corner in corners])
+        for one, other in combinations(places, 2):
+            if {one, other} & weak and len(united([places[one], places[other]])) == 1:
+                found += [places[one], places[other]]
+        return found
+
+    def _corner(self, springs: Factors, around: Range) -> _Corner:
+        """Look at a corner, if that has not been done."""
+        seen = self._corners.setdefault(springs, [])
+        for corner in seen:
+            if corner.around[0] <= around[0] and around[1] <= corner.around[1]:
+                return corner
+        low, high = self._ends(is_damping)
+        dampings = product(*(sorted({*ends}) for ends in zip(low, high, strict=True)))
+        found = {
+            factors: self._tongues(factors, around)
+            for factors in (self._factors(springs, each) for each in dampings)
+        }
+        least = found[self._factors(springs, low)]
+        corner = _Corner(around, found, least, self._weak(springs, around, least, HALF))
+        seen.append(corner)
+        for factors, here in found.items():
+            self._keep(factors, here, around)
+        return corner
+
+    def _weak(
+        self, springs: Factors, around: Range, least: Sequence[Tongue], part: float
+    ) -> tuple[Tongue, ...]:
+        """Tongues with a part of the least damping, without those that stand with all of it."""
+        low, _ = self._ends(is_damping)
+        found = self._tongues(self._factors(springs, tuple(part * each for each in low)), around)
+        return tuple(
+            tongue
+            for tongue in found
+            if not any(t.lower < tongue.upper and tongue.lower < t.upper for t in least)
+        )
+
+    def _keep(self, factors: Factors, found: tuple[Tongue, ...], around: Range) -> None:
+        """Keep tongues of some factors, of a part of the range such as it does not cut."""
+        if around[0] <= self.wide[0] and self.wide[1] <= around[1]:
+            self.points[factors] = found
+        elif inner := tuple(t for t in found if around[0] < t.lower and t.upper < around[1]):
+            known = self.points.get(factors, ())
+            new = tuple(t for t in inner if not any(k.lower < t.upper and t.lower < k.upper for k in known))
+            self.points[factors] = known + new
+
+    def _ends(self, wanted: Callable[[str], bool]) -> tuple[Factors, Factors]:
+        """Lower and upper ends of the factors of those parts."""
+        parts = [part for words, part in self.parts.items() if wanted(words)]
+        return tuple(1.0 - part for part in parts), tuple(1.0 + part for part in parts)
+
+    def _factors(self, springs: Factors, dampers: Factors) -> Factors:
+        """Put factors of stiffness and of damping into the order of the parts."""
+        of_springs, of_dampers = iter(springs), iter(dampers)
+        return tuple(next(of_springs if is_stiffness(words) else of_dampers) for words in self.parts)
+
+    def at(self, factors: Factors) -> Model:
+        """Return the model with some factors."""
+        names = (f"{words.replace(' ', '_')}_factor" for words in self.parts)
+        changed: Model = replace(self.model, **dict(zip(names, factors, strict=True)))
+        return changed
+
+    def _tongues(self, factors: Factors, around: Range) -> tuple[Tongue, ...]:
+        """Trace tongues of one value; one of many may have two multipliers so close that they are known less well."""
+        model = self.at(factors)
+        self._seconds += search_seconds(model, around)
+        try:
+            return tongues(model, around, progress=False)
+        except ArithmeticError:
+            return tongues(model, around, threshold=_ROUGH, progress=False)
+
+
+def is_stiffness(words: str) -> bool:
+    """Whether a part of a box is a stiffness."""
+    return words.endswith("stiffness")
+
+
+def is_damping(words: str) -> bool:
+    """Whether a part of a box is a damping."""
+    return not is_stiffness(words)
+
+
+def _judged(cell: Cell, corners: Sequence[_Corner]) -> _Judged:
+    """Say what tongues at the corners of a cell tell of its speeds."""
+    found = _Judged([], [], [], [])
+    for at_corners in zip(*(corner.found.values() for corner in corners), strict=True):
+        everywhere = _everywhere(at_corners)
+        for label, place in _places(cell, at_corners).items():
+            if label in everywhere:
+                found.swept.append(place)
+                found.possible.append(place)
+            seen = any(_stands(t, cell.speeds) for each in at_corners for t in each if t.label == label)
+            if label not in everywhere or not seen:
+                # One that passes between the corners is halved, too: how fast it grows there is not known.
+                found.open.append(place)
+        rest = [(t.lower, t.upper) for each in at_corners for t in each if t.label not in everywhere]
+        found.swept.extend(rest)
+        found.possible.extend(rest)
+    if cell.reach > 1.0:
+        found.weak.extend(cell.reached(tongue) for corner in corners for tongue in corner.weak)
+    return found
+
+
+def _stands(tongue: Tongue, speeds: Range) -> bool:
+    """Whether a tongue stands at some of the speeds."""
+    return tongue.lower < speeds[1] and speeds[0] < tongue.upper
+
+
+def _everywhere(at_corners: Sequence[Sequence[Tongue]]) -> set[str]:
+    """Labels that stand at all corners."""
+    return set.intersection(*({tongue.label for tongue in each} for each in at_corners))
+
+
+def _places(cell: Cell, at_corners: Sequence[Sequence[Tongue]]) -> dict[str, Range]:
+    """Where tongues of each label can be in a cell: between the corners, and beyond if they do not stand at all."""
+    everywhere = _everywhere(at_corners)
+    places: dict[str, Range] = {}
+    for tongue in (tongue for each in at_corners for tongue in each):
+        low, high = (tongue.lower, tongue.upper) if tongue.label in everywhere else cell.reached(tongue)
+        known = places.get(tongue.label, (low, high))
+        places[tongue.label] = min(low, known[0]), max(high, known[1])
+    return places
