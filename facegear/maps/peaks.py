@@ -15,8 +15,10 @@ from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.compiled import LANES
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.error_estimates import rounding_error
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import Model
-from facegear.floquet.multipliers import Method, growth_rate, rounding_error, with_method
+from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.series import ChebyshevSeries
 from facegear.floquet.stepping import Family
 from facegear.maps.likeness import same_layout
