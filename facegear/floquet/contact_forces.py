@@ -203,11 +203,14 @@ class ForcePanels:
         """
         size = self.input.shape[-1]
         count = parameters.shape[1]
-        left = np.zeros((count, *self.force_on_force.shape[2:]))
-        right = np.zeros((count, *self.force_on_state.shape[2:]))
+        left = np.empty((count, *self.force_on_force.shape[2:]))
+        right = np.empty((count, *self.force_on_state.shape[2:]))
         for order, values in enumerate(parameters):
-            if values.any():
-                factor = np.tile(values, (1, size // values.shape[1]))[:, None, :, None]
+            factor = np.tile(values, (1, size // max(values.shape[1], 1)))[:, None, :, None]
+            if order == 0:
+                np.multiply(factor, self.force_on_force[order], out=left)
+                np.multiply(factor, self.force_on_state[order], out=right)
+            elif values.any():
                 left += factor * self.force_on_force[order]
                 right += factor * self.force_on_state[order]
         number = np.arange(size)
@@ -238,7 +241,11 @@ def in_place(chosen: NDArray[np.bool_], whole: FloatArray, halves: FloatArray, a
 
 def _split(matrix: ComplexArray) -> FloatArray:
     """Real rows (Re, −Im), so that Re(matrix y) = rows (Re y, Im y)."""
-    return np.concatenate([matrix.real, -matrix.imag], axis=-1)
+    n = matrix.shape[-1]
+    rows = np.empty((*matrix.shape[:-1], 2 * n))
+    rows[..., :n] = matrix.real
+    np.negative(matrix.imag, out=rows[..., n:])
+    return rows
 
 
 _ALWAYS_ONE = PiecewiseChebyshev.constant([1.0])

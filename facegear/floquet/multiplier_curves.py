@@ -211,7 +211,11 @@ class MultiplierCurve:
         """Largest distance of a multiplier from that of a more accurate method, at three speeds between the nodes."""
         low, high = 1.0 / self.highest_speed, 1.0 / self.lowest_speed
         speeds = (1.0 / (low + (high - low) * np.array([0.0371, 0.4713, 0.9329]))).tolist()
-        return max(_distance(self, self.model.system(v), v, self.method) for v in speeds)
+        systems = [self.model.system(v) for v in speeds]
+        finer = _matrices(systems, self.method.refined())
+        return max(
+            _distance(self, system, fine, v) for system, fine, v in zip(systems, finer, speeds, strict=True)
+        )
 
     @cached_property
     def live(self) -> MultiplierCurve:
@@ -307,14 +311,14 @@ def _windows(
     return [window for part in halves for window in _windows(evaluate, motions, *part, tolerance, cuts - 1)]
 
 
-def _distance(curve: MultiplierCurve, system: PeriodicSystem, speed: float, method: Method) -> float:
+def _distance(curve: MultiplierCurve, system: PeriodicSystem, finer: FloatArray, speed: float) -> float:
     """Error of a multiplier of the curve, those inside 1/2 left out: distance to a refined method's, and rounding."""
     matrix = curve.transition_matrices(np.array([speed]))[0]
     coarse = np.linalg.eigvals(matrix)
-    fine = np.linalg.eigvals(transition_matrices([system], method.refined()))
+    fine = np.linalg.eigvals(finer[np.newaxis])
     family = Family([system])
-    rounding = rounding_error(matrix, family, method)
-    moved = np.linalg.eigvals(disturbed(matrix, family, method))
+    rounding = rounding_error(matrix, family, curve.method)
+    moved = np.linalg.eigvals(disturbed(matrix, family, curve.method))
     distance, shift = (
         np.abs(coarse[:, None] - others[:, None, :]).min(axis=2).max(axis=0) for others in (fine, moved)
     )

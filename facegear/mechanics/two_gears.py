@@ -21,7 +21,6 @@ from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple, cast
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
@@ -205,14 +204,22 @@ class TwoGears:
         # The upper gear is driven as it turns: in the coordinates of the lower one that is the mirror image.
         images = (np.ones((1, 1)), np.outer(signs, signs))
         disks = [disk_matrices(gear.body, turning) for turning in (speed, -speed)]
-        damping = block_diag(*(disk[0] for disk in disks), own[1] * np.eye(count))
+        damping = _joined([disk[0] for disk in disks], own[1] * np.eye(count))
         pressed = [
             disk[1] + image * gear.force_stiffness(speed, driving)
             for disk, image, driving in zip(disks, images, self.driving, strict=True)
         ]
-        stiffness = block_diag(*pressed, own[2] * np.eye(count))
+        stiffness = _joined(pressed, own[2] * np.eye(count))
         mass = np.diag(np.append(np.ones(len(damping) - count), np.full(count, own[0])))
         return PeriodicSystem(mass, damping, stiffness, self.loads, mesh_period(gear.body.drive, speed))
+
+
+def _joined(disks: Sequence[FloatArray], pinions: FloatArray) -> FloatArray:
+    """Matrix of both disks, of one size, and of the pinions, none of which is coupled with another."""
+    n = len(disks[0])
+    matrix = np.zeros((2 * n + len(pinions), 2 * n + len(pinions)))
+    matrix[:n, :n], matrix[n : 2 * n, n : 2 * n], matrix[2 * n :, 2 * n :] = *disks, pinions
+    return matrix
 
 
 class _Mesh(NamedTuple):
