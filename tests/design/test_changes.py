@@ -1,5 +1,6 @@
 """Ranking of changes: slopes against tongues traced anew."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from facegear.floquet.models import replace_at
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
 from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.cases import EXAMPLE_B
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.mesh_oscillator import MeshOscillator
@@ -105,6 +107,29 @@ def relative_slopes(model, speeds, further=()):
     borders = np.array([[tongue.lower, tongue.upper] for tongue in found])
     slopes = slopes_of_tongues(model, changes, found, speeds)[..., :2] / borders
     return dict(zip([change.name for change in changes], slopes, strict=True))
+
+
+def test_growth_is_differentiated_at_the_very_peak_where_that_moves_along():
+    """As the largest growth of changed models, each found by Newton's method; seven digits of the peak give five."""
+    speeds = (float(rad_per_s(190.0)), float(rad_per_s(200.0)))
+    model = replace(EXAMPLE_B, pinion_angles=(0.0, math.pi / 2.0))
+    (tongue,) = tongues(model, speeds)
+
+    def largest(factor):
+        changed, peak, step = thicker(model, factor), tongue.peak, 1e-4 * tongue.width
+        for _ in range(4):
+            three = [growth_rate(changed.system(peak + k * step)) for k in (-1.0, 0.0, 1.0)]
+            peak += 0.5 * step * (three[0] - three[2]) / (three[0] - 2.0 * three[1] + three[2])
+        return growth_rate(changed.system(peak))
+
+    changes = possible_changes(model)[:1]
+    assert changes[0].name == "thickness of the body"
+    found = slopes_of_tongues(model, changes, (tongue,), speeds)[0, 0, 2]
+    assert found == pytest.approx((largest(1.0 + 1e-6) - largest(1.0 - 1e-6)) / 2e-6, rel=5e-6)
+
+
+def thicker(model, factor):
+    return replace_at(model, ("body", "thickness_ratio"), factor * model.body.thickness_ratio)
 
 
 def test_larger_drives_of_the_same_shape_are_slower_in_proportion():
