@@ -186,13 +186,13 @@ class _Found:
             self._keep(
                 crew, (number, 0), Outcome(replace(case, model=found.model), found.tongues, found.settled)
             )
-            # Where two bases agree for the file's teeth, the smaller is where the others begin.
+            # Where two bases agree for the file's teeth, the smaller is where the others begin, and that of tolerances.
             last = found.steps[-2:][0]
             start = with_basis(case.model, last.nodal_circles, last.nodal_diameters)
             words = f"unstable at {100 * found.unstable_share:.3g} % of the speeds"
             # Those of the file's own contact and teeth.
             if number < len(FORCES) and self.file.tolerances.given:
-                self._add_worst(crew, case.force, worst_case, found.model)
+                self._add_worst(crew, case.force, worst_case, start if found.settled else found.model)
         variants, self.refused[number, 0], others = other_teeth(
             self.file, replace(case, model=start), self.contacts[case.contact]
         )

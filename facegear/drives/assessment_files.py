@@ -146,7 +146,8 @@ def _tolerances(found: Assessment) -> Section:
     if TORSION in found.worst:
         tables += tuple(_at_values([TORSION], found, "Values in the range, in torsion"))
     words = Paragraph(
-        "Of the file's own contact and teeth, at both ends of each damping, and at values of each stiffness as close "
+        "Of the file's own contact and teeth, of the disk in the smaller of two bases that agree at the values of the "
+        "file, or in the last one if none do. At both ends of each damping, and at values of each stiffness as close "
         "together as it took, over speeds so wide that no tongue comes into the range from outside unseen. Natural "
         "frequencies rise with every stiffness: a tongue that stands at neighbouring values has swept all speeds "
         "between its places. One that stands at some of them only, or between them where it is better tuned, is looked "

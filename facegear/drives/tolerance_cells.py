@@ -175,11 +175,16 @@ class BoxSearch:
         number = count()
         queue = [(-cell.reach, next(number), cell) for cell in finer]
         heapq.heapify(queue)
-        while queue and self._seconds < _SECONDS:
+        while queue and self._seconds + self._needed(queue[0][-1]) < _SECONDS:
             *_, cell = heapq.heappop(queue)
             for half in () if self._is_known(cell) else self._halves(cell):
                 heapq.heappush(queue, (-half.reach, next(number), half))
         self.possible += [cell.speeds for *_, cell in queue]
+
+    def _needed(self, cell: Cell) -> float:
+        """Seconds that a cell may take, none of whose corners has been looked at."""
+        dampings = math.prod(2 if part else 1 for words, part in self.parts.items() if is_damping(words))
+        return len(cell.corners) * (dampings + 1) * search_seconds(self.model, cell.around)
 
     def _cells(self) -> list[Cell]:
         """Divide the box into cells that are as large as may be."""
