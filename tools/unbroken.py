@@ -1,4 +1,4 @@
-"""Extension of Sphinx: the number of an equation of the dissertation, as (3-20), is not broken where a line ends."""
+"""Extension of Sphinx: no line ends within the number of an equation, as (3-20), or before a percent sign, as 19 %."""
 
 import re
 from typing import Any
@@ -7,13 +7,13 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
-NUMBER = re.compile(r"(\(\d{1,2}-\d{1,2}[a-z]?\))")
+NUMBER = re.compile(r"(\(\d{1,2}-\d{1,2}[a-z]?\)|[-+−]?\d[\d.,]* %)")
 # In these a text is not what a reader reads as running text, or is used again elsewhere.
 LEFT_ALONE = (nodes.literal, nodes.literal_block, nodes.math, nodes.math_block, nodes.raw, nodes.title)
 
 
 def pieces(text: str) -> list[nodes.Node]:
-    """Return a text as nodes, the numbers of equations in it each in a span of the class `unbroken`."""
+    """Return a text as nodes, numbers of equations and percentages in it each in a span of the class `unbroken`."""
     parts = NUMBER.split(text)  # every second one is a number
     return [
         nodes.inline(part, part, classes=["unbroken"]) if place % 2 else nodes.Text(part)
@@ -32,7 +32,7 @@ def is_running_text(node: nodes.Node) -> bool:
 
 
 class KeepNumbersWhole(SphinxPostTransform):
-    """Put the numbers of equations into spans that the style sheet keeps on one line."""
+    """Put numbers of equations and percentages into spans that the style sheet keeps on one line."""
 
     default_priority = 900  # outputs of cells are text of the page by then
     formats = ("html",)

@@ -20,7 +20,17 @@ from facegear.drives.cell_figure import RING, cell_figure, described, draw_detai
 from facegear.drives.explore import View, map_stages, reading_map, unstable
 from facegear.drives.map_figure import heat, map_figure
 from facegear.drives.studies.study import Quantity, Study
-from facegear.drives.widgets import look, refused, said, small, widget_of
+from facegear.drives.widgets import (
+    WHOLE_LABELS,
+    entry_of,
+    look,
+    refused,
+    said,
+    shown,
+    small,
+    typed,
+    widget_of,
+)
 from facegear.floquet.models import Model, replace_parameter
 from facegear.plotting.interactive import image
 from facegear.plotting.style import GROWTH, WIDTH, styled
@@ -79,6 +89,8 @@ class MapExplorer:
     ----------
     controls : dict of str to ipywidgets.Widget
         By name, "highest_speed" and the like among them.
+    entries : dict of str to ipywidgets.Text
+        By name, a field beside each slider. What lies out of its range, or is no number, is refused with a message.
     vertical : ipywidgets.Dropdown
         What is on the vertical axis.
     column, row : ipywidgets.IntSlider
@@ -102,6 +114,11 @@ class MapExplorer:
         self.folder = Path(folder)
         self.controls = {control.name: widget_of(control) for control in (*study.controls, study.speed)}
         self.controls[study.speed.name].description = f"highest {study.speed.label}"
+        self.entries = {
+            control.name: entry_of(control)
+            for control in (*study.controls, study.speed)
+            if isinstance(control, Quantity)
+        }
         self.vertical = ipywidgets.Dropdown(
             options=[(quantity.label, quantity.name) for quantity in study.sweepable],
             value=study.vertical,
@@ -131,6 +148,9 @@ class MapExplorer:
         self._show_cell()
         for control in (*self.controls.values(), self.vertical):
             control.observe(lambda _: self.refresh(), "value")
+        for quantity in (*study.controls, study.speed):
+            if isinstance(quantity, Quantity):
+                self._join(quantity)
         for slider in (self.column, self.row):
             slider.observe(self._moved, "value")
 
@@ -141,6 +161,29 @@ class MapExplorer:
     def settings(self) -> dict[str, Any]:
         """What the controls say, as shown."""
         return {name: control.value for name, control in self.controls.items()}
+
+    def _join(self, quantity: Quantity) -> None:
+        """Let slider and field of a quantity follow each other."""
+        slider, entry = self.controls[quantity.name], self.entries[quantity.name]
+
+        def read(_change: Any) -> None:
+            try:
+                number = typed(quantity, entry.value)
+            except ValueError as problem:
+                self._refuse(problem)
+                return
+            if number == slider.value:
+                self.refresh()
+            else:
+                slider.value = number
+
+        def write(_change: Any) -> None:
+            entry.unobserve(read, "value")
+            entry.value = shown(slider.value)
+            entry.observe(read, "value")
+
+        entry.observe(read, "value")
+        slider.observe(write, "value")
 
     def refresh(self) -> None:
         """Compute the map for what the controls say, or say why there is none."""
@@ -163,7 +206,8 @@ class MapExplorer:
         settings = self.settings
         for control in self.study.controls:
             if isinstance(control, Quantity):
-                self.controls[control.name].disabled = control is quantity or not control.matters(settings)
+                off = control is quantity or not control.matters(settings)
+                self.controls[control.name].disabled = self.entries[control.name].disabled = off
         model = self.study.model(settings)
         speeds, values = self.study.axes(settings, quantity.name)
         assert quantity.parameter is not None
@@ -270,16 +314,22 @@ class MapExplorer:
         self.picture.value = image(cell_figure(detail), alt, name="facegear-cell")
 
     def _laid_out(self) -> ipywidgets.Widget:
+        controls = [
+            ipywidgets.HBox([control, self.entries[name]]) if name in self.entries else control
+            for name, control in self.controls.items()
+        ]
         saving = [] if self.study.content is None else [self.name, self.save, self.saved]
         left = ipywidgets.VBox(
-            [self.vertical, *self.controls.values(), self.message, *saving],
+            [ipywidgets.HTML(WHOLE_LABELS), self.vertical, *controls, self.message, *saving],
             layout=ipywidgets.Layout(width="32rem", max_width="100%"),
         )
         right = ipywidgets.VBox(
             [self.figure, self.status, self.column, self.row, self.report, self.picture],
             layout=ipywidgets.Layout(flex="1 1 30rem", min_width="20rem", overflow="hidden"),
         )
-        return ipywidgets.HBox([left, right], layout=ipywidgets.Layout(flex_flow="row wrap", width="100%"))
+        whole = ipywidgets.HBox([left, right], layout=ipywidgets.Layout(flex_flow="row wrap", width="100%"))
+        whole.add_class("facegear-explorer")
+        return whole
 
 
 def _in_pieces(work: Iterator[None]) -> None:

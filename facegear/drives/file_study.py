@@ -43,6 +43,7 @@ _NUMBERS = (
 _SWEPT = ("thickness_ratio", "bore_radius_mm", "stiffness", "damping_us", "mass", "power_kW")
 _AT_LEAST = {"stiffness": 2.0, "damping_us": 20.0, "mass": 2.0}
 _SPREAD = 3.0
+_POWER = "power_kW"
 # Digits of a number that a control sets: what conversion to SI and back adds is no part of it.
 _DIGITS = 12
 # Steps of a slider.
@@ -141,6 +142,8 @@ def _tidy(value: float) -> float:
 def _quantity(key: Key, value: float) -> Quantity:
     """Control of a number of the file, whose slider has its value among its steps."""
     low = 0.0 if key.name in _AT_LEAST else max(key.lowest, value / _SPREAD)
+    if key.name == _POWER:
+        low = key.lowest  # with hardly any force the map is that of the moving contact alone
     high = min(key.highest, max(_SPREAD * value, _AT_LEAST.get(key.name, 0.0)))
     if key.kind == "integer":
         return Quantity(key.name, _label(key), int(low), int(high), int(value), 1, whole=True)
@@ -159,7 +162,8 @@ def _quantity(key: Key, value: float) -> Quantity:
 
 
 def _label(key: Key) -> str:
-    """Say what a key is in a few words, then its symbol and its unit."""
+    """Say what a key is in a few words, then its symbol, if it can be written without a subscript, and its unit."""
     first, *others = re.sub(r" \(\d-\d+\)", "", key.plain_meaning.split(";")[0]).split(", ")
-    words = f"{others[0]} {first}" if others and len(first) < 4 else first
+    named = others and len(first) < 4
+    words = first if not named else others[0] if "_" in first else f"{others[0]} {first}"
     return f"{words} [{key.unit}]" if key.unit else words

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from decimal import Decimal
 from html import escape
 from typing import Any
 
 import ipywidgets
 
-from facegear.drives.studies.study import Choice, Control
+from facegear.drives.studies.study import Choice, Control, Quantity
 from facegear.plotting.style import GREY, INK, VERMILION
 
 
@@ -21,23 +20,70 @@ def look() -> dict[str, Any]:
 
 
 def widget_of(control: Control) -> Any:
-    """Return the menu or slider of a control."""
+    """Return the menu or slider of a control. A slider shows no number: :func:`entry_of` does, and takes any."""
     if isinstance(control, Choice):
         return ipywidgets.Dropdown(
             options=list(control.options), value=control.value, description=control.label, **look()
         )
     limits = {"min": control.lowest, "max": control.highest, "step": control.step, "value": control.value}
+    kind = ipywidgets.IntSlider if control.whole else ipywidgets.FloatSlider
     if control.whole:
         limits = {name: int(number) for name, number in limits.items()}
-        return ipywidgets.IntSlider(**limits, description=control.label, continuous_update=False, **look())
-    places = max(0, -int(Decimal(str(control.step)).normalize().as_tuple().exponent))
-    return ipywidgets.FloatSlider(
-        **limits,
-        description=control.label,
-        readout_format=f".{places}f",
+    shape = {"layout": ipywidgets.Layout(flex="1 1 auto", width="auto"), "style": look()["style"]}
+    return kind(**limits, description=control.label, continuous_update=False, readout=False, **shape)
+
+
+def entry_of(quantity: Quantity) -> Any:
+    """Return the field beside a slider, with its number in all digits."""
+    return ipywidgets.Text(
+        value=shown(quantity.value),
+        placeholder=quantity.label,
         continuous_update=False,
-        **look(),
+        layout=ipywidgets.Layout(width="6rem", flex="0 0 auto"),
     )
+
+
+def shown(value: float) -> str:
+    """Write a number of a slider in the digits it has."""
+    return f"{value:.10g}"
+
+
+def typed(quantity: Quantity, text: str) -> float | int:
+    """Read what was typed into a field.
+
+    Raises
+    ------
+    ValueError
+        If it is no number, or not one that the quantity can have here.
+
+    Examples
+    --------
+    >>> module = Quantity("module", "module [mm]", 1.0, 8.0, 3.175, 0.025)
+    >>> typed(module, "4.25")
+    4.25
+    >>> typed(module, "0")
+    Traceback (most recent call last):
+    ValueError: module [mm] must lie between 1 and 8 here, got 0
+    """
+    try:
+        number = float(text)
+    except ValueError:
+        raise ValueError(f"{quantity.label} must be a number, got {text!r}") from None
+    if not quantity.lowest <= number <= quantity.highest:
+        ends = f"{shown(quantity.lowest)} and {shown(quantity.highest)}"
+        raise ValueError(f"{quantity.label} must lie between {ends} here, got {text}")
+    if not quantity.whole:
+        return number
+    if not number.is_integer():
+        raise ValueError(f"{quantity.label} must be a whole number, got {text}")
+    return int(number)
+
+
+# Labels of controls are cut at the end by default, where symbol and unit stand.
+WHOLE_LABELS = (
+    "<style>.facegear-explorer .widget-label {white-space: normal; overflow: visible; height: auto; "
+    "line-height: 1.25; align-self: center}</style>"
+)
 
 
 def small(text: str) -> str:
@@ -54,6 +100,11 @@ def refused(problem: Exception) -> str:
     """HTML of why the settings of the controls are not possible."""
     return (
         f'<p role="alert" style="color:{INK};border-left:4px solid {VERMILION};padding:0 0.6em;'
-        f'line-height:1.4;white-space:normal"><b>Not possible:</b> {escape(str(problem))}. '
+        f'line-height:1.4;white-space:normal"><b>Not possible:</b> {escape(_of_settings(problem))}. '
         "The map still shows the last settings that were.</p>"
     )
+
+
+def _of_settings(problem: Exception) -> str:
+    """Words of a refusal; that it is of the settings, as a file would say of itself, is said already."""
+    return str(problem).removeprefix("these settings: ")

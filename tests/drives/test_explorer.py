@@ -196,3 +196,38 @@ def test_borders_beyond_what_was_searched_are_not_given_as_borders():
     depth = STUDY.swept("depth")
     sentence = cell.described(clipped, 0.9, depth, STUDY.speed)
     assert f"from below {low:.5g} to above {high:.5g}" in sentence
+
+
+def test_a_number_may_be_typed(widget):
+    before = shown_map(widget)
+    widget.entries["damping_ratio"].value = "0.1"
+    assert widget.controls["damping_ratio"].value == 0.1
+    assert not np.allclose(shown_map(widget), before, equal_nan=True)
+    widget.controls["damping_ratio"].value = 0.05
+    assert widget.entries["damping_ratio"].value == "0.05"
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        ("5", "damping ratio ϑ must lie between 0 and 0.2 here, got 5"),
+        ("-1", "must lie between 0 and 0.2 here, got -1"),
+        ("nan", "must lie between"),
+        ("much", "damping ratio ϑ must be a number, got &#x27;much&#x27;"),
+    ],
+)
+def test_what_is_out_of_range_or_no_number_is_refused_and_not_clipped(widget, written, told):
+    value, before = widget.controls["damping_ratio"].value, shown_map(widget)
+    widget.entries["damping_ratio"].value = written
+    assert told in widget.message.value
+    assert widget.controls["damping_ratio"].value == value
+    np.testing.assert_allclose(shown_map(widget), before, rtol=1e-12)
+    widget.entries["damping_ratio"].value = f"{value:g}"
+    assert widget.message.value == ""
+
+
+def test_a_field_is_switched_off_with_its_slider(widget):
+    assert widget.entries["depth"].disabled
+    widget.vertical.value = "damping_ratio"
+    assert not widget.entries["depth"].disabled
+    assert widget.entries["damping_ratio"].disabled

@@ -125,3 +125,12 @@ def test_the_notebook_of_the_command_is_that_of_the_file(tmp_path, monkeypatch):
     import nbformat
 
     nbformat.validate(nbformat.from_dict(made))
+
+
+def test_labels_are_words_without_raw_subscripts_and_power_goes_down_to_what_a_file_takes():
+    study = study_of(None)
+    labels = {control.name: control.label for control in study.controls}
+    assert not [label for label in labels.values() if "_" in label]
+    assert labels["pinion_teeth"] == "teeth of the pinion"
+    (power,) = [control for control in study.controls if control.name == "power_kW"]
+    assert power.lowest < 0.01 * power.value

@@ -1,4 +1,4 @@
-"""Numbers of equations are kept on one line."""
+"""Numbers of equations and percentages are kept on one line."""
 
 import pytest
 from docutils import nodes
@@ -11,6 +11,7 @@ from tools.unbroken import is_running_text, pieces
     [
         ("By (3-20) and (4-2a).", ["(3-20)", "(4-2a)"]),
         ("(7-2)", ["(7-2)"]),
+        ("19 % and -12.8 %, not 7 rpm", ["19 %", "-12.8 %"]),
         ("From 3-20 on, (1.5-2), (2012-05) and (x-1)", []),
     ],
 )

@@ -41,30 +41,41 @@ def _hatch_gaps(ax: Axes, value: FloatArray) -> None:
         ax.axhspan(*ends, facecolor="none", edgecolor=GREY, hatch="///", linewidth=0.0)
 
 
+def _darkest(growth: FloatArray) -> float:
+    """Growth rate of the darkest colour: the largest, unless nine unstable cells in ten stay below a third of it."""
+    unstable = growth[growth > 0.0]
+    if not unstable.size:
+        return 1e-9
+    largest, most = float(unstable.max()), float(np.quantile(unstable, 0.9))
+    return most if 3.0 * most < largest else largest
+
+
 @styled
 def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int = 3) -> Figure:
     """Draw maps of several models on one scale of colours, each with the unstable share of its cells.
 
     `label` and `scale` are those of the parameter. Where its values leave a gap, nothing is coloured but hatched.
+    One narrow strip of strong growth would leave all else pale: there the colours end before it, with an arrow.
     """
     names = data.model_name.values.tolist()
     rows = -(-len(names) // columns)
     figure, axes = panels(rows, min(columns, len(names)), 2.8 * rows + 0.8, sharex=True, sharey=True)
-    largest = max(1e-9, float(data.growth_rate.max()))
+    largest = _darkest(data.growth_rate.values)
     speed, value = data.speed.values, data.value.values * scale
     for place, (ax, name) in enumerate(zip(axes, names, strict=False)):
         growth = data.growth_rate.isel(model=place).values
         for rows_of_block in _blocks(value):
             mesh = draw_unstable(ax, speed, value[rows_of_block], growth[rows_of_block], largest)
         _hatch_gaps(ax, value)
-        ax.set_title(name, loc="left", fontsize=9)
         # A single cell cannot be seen: the number says whether there is one.
-        ax.set_title(f"{100 * (growth > 0.0).mean():.2g} %", loc="right", fontsize=9)
+        share = f"{100 * (growth > 0.0).mean():.2g}\N{NO-BREAK SPACE}%"
+        ax.set_title(f"{name}\n{share}", loc="left", fontsize=9)
         ax.grid(False)
         if place % columns == 0:
             ax.set_ylabel(label)
     figure.supxlabel(_SPEED, fontsize="medium")
-    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", shrink=0.8)
+    beyond = "max" if float(data.growth_rate.max()) > largest else "neither"
+    figure.colorbar(mesh, ax=axes, label="growth rate [1/s]", shrink=0.8, extend=beyond)
     return figure
 
 

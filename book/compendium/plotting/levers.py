@@ -62,7 +62,8 @@ def arrows(data: xr.Dataset, symbols: Sequence[str]) -> Figure:
 def _chart(values: FloatArray, rows: Sequence[str], columns: Sequence[str], label: str) -> Figure:
     figure = Figure(figsize=(WIDTH, 1.0 + 0.3 * len(rows)), layout="constrained")
     ax = figure.subplots()
-    limit = min(float(np.nanmax(np.abs(values))), _DARKEST)
+    largest = float(np.nanmax(np.abs(values)))
+    limit = min(largest, _DARKEST)
     norm = TwoSlopeNorm(0.0, -limit, limit)
     mesh = ax.imshow(values, cmap=_DIVERGING, norm=norm, aspect="auto")
     for i, j in np.ndindex(*values.shape):
@@ -79,7 +80,8 @@ def _chart(values: FloatArray, rows: Sequence[str], columns: Sequence[str], labe
     ax.grid(visible=False)
     for side in ax.spines.values():
         side.set_visible(False)
-    figure.colorbar(mesh, ax=ax, label=label, pad=0.02, extend="both", aspect=30)
+    beyond = "both" if largest > limit else "neither"
+    figure.colorbar(mesh, ax=ax, label=label, pad=0.02, extend=beyond, aspect=30)
     return figure
 
 
