@@ -297,6 +297,7 @@ def task_book() -> dict:
             ROOT / "tools" / "public_names.py",
             ROOT / "tools" / "figure_letters.py",
             ROOT / "tools" / "unbroken.py",
+            ROOT / "tools" / "without_thebe.py",
             ROOT / "CITATION.cff",
             ROOT / "_config.yml",
             ROOT / "uv.lock",

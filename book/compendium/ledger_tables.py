@@ -8,6 +8,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+from compendium.breakable import breakable
 from compendium.printed import STATUSES, LedgerRow, PrintedValue
 from facegear.support.tables import write_table
 
@@ -69,7 +70,9 @@ def remarks_as_markdown(rows: Sequence[LedgerRow]) -> str:
         if not isinstance(value.printed, bool):
             stated += f": {value.printed} {value.unit}".rstrip()
         why = f"{value.convention} {value.remark}".strip()
-        lines.append(_table_row(value.where, stated, why, f"{value.how}: {_found(row)}"))
+        lines.append(
+            _table_row(value.where, stated, breakable(why), breakable(f"{value.how}: {_found(row)}"))
+        )
     return "\n".join(lines)
 
 

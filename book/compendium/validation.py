@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from compendium.breakable import breakable
 from compendium.checks import check_anchors, element_at, load_anchors
 from facegear.support.labelled import load
 
@@ -26,6 +27,8 @@ class OutsideValue:
         In the same unit.
     unit : str
         Of both; empty if they have none.
+    decimals : int, optional
+        Of the value from outside as it is printed, a last zero among them; as many as show the deviation if left out.
     """
 
     what: str
@@ -33,6 +36,7 @@ class OutsideValue:
     outside: float
     found: float
     unit: str = ""
+    decimals: int | None = None
 
     @property
     def deviation(self) -> float:
@@ -92,10 +96,9 @@ def as_markdown(values: Sequence[OutsideValue]) -> str:
         # Enough to see the deviation in.
         digits = 10 if value.deviation < 1e-7 else 8
         unit = f" {value.unit}" if value.unit else ""
-        numbers = (f"{number:.{digits}g}{unit}" for number in (value.outside, value.found))
-        lines.append(
-            f"| {value.what} | {value.route} | {' | '.join(numbers)} | {readable(value.deviation)} |"
-        )
+        shown = f".{digits}g" if value.decimals is None else f".{value.decimals}f"
+        numbers = f"{value.outside:{shown}}{unit} | {value.found:.{digits}g}{unit}"
+        lines.append(f"| {value.what} | {value.route} | {numbers} | {readable(value.deviation)} |")
     return "\n".join(lines)
 
 
@@ -138,12 +141,12 @@ def anchored(data_directory: str | Path) -> tuple[AnchoredChapter, ...]:
 def chapters_as_markdown(chapters: Sequence[AnchoredChapter]) -> str:
     """Return the anchors of the chapters as a Markdown table."""
     lines = [
-        "| chapter | figures | anchors | median deviation | largest | in | of a tolerance at most |",
-        "|--:|--:|--:|--:|--:|---|--:|",
+        "| chapter | anchors of figures | median deviation | largest | in | of a tolerance at most |",
+        "|--:|--:|--:|--:|---|--:|",
     ]
     lines += [
-        f"| {row.number} | {row.figures} | {row.anchors} | {readable(row.median)} "
-        f"| {readable(row.deviation)} | `{row.figure}` | {100.0 * row.fraction:.0f} % |"
+        f"| {row.number} | {row.anchors} of {row.figures} | {readable(row.median)} "
+        f"| {readable(row.deviation)} | {breakable(f'`{row.figure}`')} | {100.0 * row.fraction:.0f} % |"
         for row in chapters
     ]
     return "\n".join(lines)

@@ -277,8 +277,8 @@ def thickness_advice(found: Findings) -> tuple[str, ...]:
     """Say which thickness makes unstable cases stable."""
     here = found.file.transverse.gear.body.thickness_ratio
     return tuple(
-        f"A body of h/a above {thickness.critical.thickness_ratio:.4g} (now {here:.4g}) is stable at all speeds: "
-        f"{case.name}."
+        f"With h/a above {thickness.critical.thickness_ratio:.4g} (now {here:.4g}) the body is stable at all speeds in "
+        f"the case “{case.name}”."
         for case, thickness in found.thicknesses
         if thickness.critical is not None and case.found.tongues
     )

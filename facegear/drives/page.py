@@ -136,9 +136,11 @@ class Table:
 
     def as_html(self) -> str:
         """HTML that shows it."""
-        head = "".join(f'<th scope="col">{as_html(heading)}</th>' for heading in self.headings)
+        # In a notebook and in the book there is no style sheet of a report.
+        room = 'style="padding: 0.2em 0.6em"'
+        head = "".join(f'<th scope="col" {room}>{as_html(heading)}</th>' for heading in self.headings)
         body = "".join(
-            f"<tr>{''.join(f'<td>{as_html(cell)}</td>' for cell in row)}</tr>" for row in self.rows
+            f"<tr>{''.join(f'<td {room}>{as_html(cell)}</td>' for cell in row)}</tr>" for row in self.rows
         )
         return (
             '<div class="table" style="overflow-x: auto" tabindex="0" role="region" '

@@ -32,8 +32,9 @@ def number_table(rows: Sequence[Row], caption: str) -> Table:
 
 
 def _readable(value: float) -> str:
-    """Five digits, without a power of ten."""
-    return np.format_float_positional(value, precision=5, fractional=False, trim="-")
+    """Four digits, without a power of ten; those of a large number in groups of three."""
+    plain = np.format_float_positional(value, precision=4, fractional=False, trim="-")
+    return f"{float(plain):,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}") if abs(value) >= 1e4 else plain
 
 
 def verdict(found: Findings) -> Section:
@@ -105,10 +106,10 @@ def unstable_speeds(found: Findings) -> Section:
     """Show at which speeds the drive is unstable and at which it is not."""
     strips = Picture(
         draw.speed_strips(found.tongue_tables, found.range_rpm),
-        "Speeds at which the drive is unstable (red, with the names of the tongues) and at which it is stable "
+        "Speeds at which the drive is unstable (orange, with the names of the tongues) and at which it is stable "
         "(green), for both contact ratios and both directions of the driving force; the contact ratio that "
         "the file asks for comes first.",
-        "Horizontal strips over speed, one for each case, green with red intervals",
+        "Horizontal strips over speed, one for each case, green with orange intervals",
     )
     names = Paragraph(
         "A name such as (1+8)/1 gives the natural frequencies of the mean system that combine, numbered from "
@@ -170,10 +171,15 @@ def frequencies(found: Findings) -> Section:
 
 def origins(found: Findings) -> Section:
     """Show where the tongues come from."""
+    combined = (
+        " and those of their combinations that open a tongue (dashed)"
+        if found.combinations["combination"].shape[0]
+        else "; no tongue here is opened by a combination of them"
+    )
     picture = Picture(
         draw.combinations(found.combinations, found.tongue_tables[found.cases[0].name]),
-        "Mesh frequency over speed against the natural frequencies of the mean transverse system (pale) and "
-        "those of their combinations that open a tongue (dashed, if there are such), for the first case.",
+        f"Mesh frequency over speed against the natural frequencies of the mean transverse system (pale){combined}, "
+        "for the first case.",
         "A straight line of mesh frequency crosses dashed curves of combined natural frequencies; thick marks "
         "where it meets them",
     )

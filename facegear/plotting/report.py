@@ -43,12 +43,18 @@ def combinations(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
     for number, frequency in enumerate(data["combination"].values):
         name = None if number else "combinations that open a tongue"
         ax.plot(speed, frequency, color=BLUE, linewidth=1.1, linestyle="--", label=name)
-    ax.plot(speed, mesh, color=INK, linewidth=2.0, label="mesh frequency")
+    ax.plot(speed, mesh, color=INK, linewidth=1.5, label="mesh frequency", zorder=3)
+    named: set[str] = set()
     for number, (label, low, high) in enumerate(
         zip(tongues["label"].values, tongues["lower"].values, tongues["upper"].values, strict=True)
     ):
         ends = np.array([low, high])
-        ax.plot(ends, np.interp(ends, speed, mesh), color=VERMILION, linewidth=5, solid_capstyle="round")
+        on_mesh = np.interp(ends, speed, mesh)
+        ax.plot(ends, on_mesh, color=VERMILION, linewidth=6, solid_capstyle="round", zorder=2)
+        # Flutter of the mean system goes by one name in all intervals that resonances cut out of it.
+        if label in named:
+            continue
+        named.add(label)
         centre = float(ends.mean())
         ax.annotate(
             label,
