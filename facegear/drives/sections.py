@@ -32,8 +32,9 @@ def number_table(rows: Sequence[Row], caption: str) -> Table:
 
 
 def _readable(value: float) -> str:
-    """Four digits, without a power of ten; those of a large number in groups of three."""
-    plain = np.format_float_positional(value, precision=4, fractional=False, trim="-")
+    """Five digits, four of a fraction, without a power of ten; those of a large number in groups of three."""
+    precision = 5 if abs(value) >= 1.0 else 4
+    plain = np.format_float_positional(value, precision=precision, fractional=False, trim="-")
     return f"{float(plain):,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}") if abs(value) >= 1e4 else plain
 
 

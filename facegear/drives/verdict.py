@@ -190,7 +190,10 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
         headline += " In torsion it is stable at all of them."
     open_cases = sum(not case.found.settled for case in computed)
     if open_cases:
-        headline += f" NOT SETTLED in {open_cases} of {len(computed)} cases: a larger basis may change them."
+        which = "it" if open_cases == 1 else "them"
+        headline += (
+            f" NOT SETTLED in {open_cases} of {len(computed)} cases: a larger basis may change {which}."
+        )
     stress, allowed = duty.root_stresses(file.transverse.gear.body)
     strength = f"{1e-6 * stress:.4g} MPa at the root of the pinion's tooth, {1e-6 * allowed:.4g} MPa allowed"
     if stress >= allowed:
