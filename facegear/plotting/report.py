@@ -50,7 +50,7 @@ def combinations(data: xr.Dataset, tongues: xr.Dataset) -> Figure:
     ):
         ends = np.array([low, high])
         on_mesh = np.interp(ends, speed, mesh)
-        ax.plot(ends, on_mesh, color=VERMILION, linewidth=6, solid_capstyle="round", zorder=2)
+        ax.plot(ends, on_mesh, color=VERMILION, linewidth=5, solid_capstyle="round", zorder=2)
         # Flutter of the mean system goes by one name in all intervals that resonances cut out of it.
         if label in named:
             continue

@@ -48,6 +48,20 @@ def test_combinations_mark_every_tongue_on_the_mesh_frequency(table):
     assert "[rpm]" in ax.get_xlabel()
 
 
+def test_a_name_that_returns_is_written_once():
+    table = tongues([200.0, 600.0], [220.0, 700.0], ["mean 1", "mean 1"])
+    data = xr.Dataset(
+        {
+            "mesh_frequency": ("speed_rpm", 2.0 * SPEEDS),
+            "natural_frequency": (("mode", "speed_rpm"), np.full((3, 10), 150.0)),
+            "combination": (("label", "speed_rpm"), np.empty((0, 10))),
+        },
+        coords={"speed_rpm": SPEEDS, "label": np.array([], dtype=str)},
+    )
+    (ax,) = draw.combinations(data, table).axes
+    assert texts(ax) == ["mean 1"]
+
+
 @pytest.mark.parametrize("growth", [-1.0, 1.0, None], ids=["stable", "unstable", "both"])
 def test_map_shows_the_drives_own_value_in_the_unit_of_the_axis(growth):
     values = np.array([1.0, 2.0, 3.0])
