@@ -315,7 +315,9 @@ class MapExplorer:
 
     def _laid_out(self) -> ipywidgets.Widget:
         controls = [
-            ipywidgets.HBox([control, self.entries[name]]) if name in self.entries else control
+            ipywidgets.HBox([control, self.entries[name]], layout=ipywidgets.Layout(width="98%"))
+            if name in self.entries
+            else control
             for name, control in self.controls.items()
         ]
         saving = [] if self.study.content is None else [self.name, self.save, self.saved]

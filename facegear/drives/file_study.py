@@ -158,6 +158,7 @@ def _quantity(key: Key, value: float) -> Quantity:
         _tidy(step),
         unit=key.to_si(1.0),
         parameter=key.si_name if swept else None,
+        why="a drive in a file transmits power" if key.name == _POWER else "",
     )
 
 

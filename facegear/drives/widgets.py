@@ -71,7 +71,8 @@ def typed(quantity: Quantity, text: str) -> float | int:
         raise ValueError(f"{quantity.label} must be a number, got {text!r}") from None
     if not quantity.lowest <= number <= quantity.highest:
         ends = f"{shown(quantity.lowest)} and {shown(quantity.highest)}"
-        raise ValueError(f"{quantity.label} must lie between {ends} here, got {text}")
+        why = f": {quantity.why}" if quantity.why else ""
+        raise ValueError(f"{quantity.label} must lie between {ends} here, got {text}{why}")
     if not quantity.whole:
         return number
     if not number.is_integer():

@@ -12,6 +12,7 @@ from facegear.drives.studies.drive import drive_study
 from facegear.drives.studies.oscillator import oscillator_study
 from facegear.drives.studies.study import shown_only
 from facegear.drives.verdict import driven
+from facegear.drives.widgets import typed
 
 examples = pytest.mark.parametrize("name", example_names())
 
@@ -134,3 +135,9 @@ def test_labels_are_words_without_raw_subscripts_and_power_goes_down_to_what_a_f
     assert labels["pinion_teeth"] == "teeth of the pinion"
     (power,) = [control for control in study.controls if control.name == "power_kW"]
     assert power.lowest < 0.01 * power.value
+
+
+def test_a_power_of_nothing_is_refused_with_the_reason():
+    (power,) = [control for control in study_of(None).controls if control.name == "power_kW"]
+    with pytest.raises(ValueError, match=r"must lie between .* got 0: a drive in a file transmits power"):
+        typed(power, "0")

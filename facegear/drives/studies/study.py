@@ -45,6 +45,8 @@ class Quantity:
         Whether it counts something.
     when : tuple of str, optional
         Name of a choice and the options of it under which the number matters; always if left out.
+    why : str
+        Why the limits are what they are, where a reader may ask.
     """
 
     name: str
@@ -57,6 +59,7 @@ class Quantity:
     parameter: str | None = None
     whole: bool = False
     when: tuple[str, ...] = ()
+    why: str = ""
 
     def __post_init__(self) -> None:
         for end in ("lowest", "highest", "value"):
