@@ -1,4 +1,8 @@
-"""Extension of Sphinx: the number of an equation of the dissertation, as (3-20), is not broken where a line ends."""
+"""Extension of Sphinx: what belongs together is not parted where a line ends.
+
+That is the number of an equation of the dissertation, as (3-20); a number and its per cent; a formula and the stop
+after it.
+"""
 
 import re
 from typing import Any
@@ -8,6 +12,8 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 NUMBER = re.compile(r"(\(\d{1,2}-\d{1,2}[a-z]?\))")
+PERCENT = re.compile(r"(?:(?<=\d)|^)[ \n]%")
+CLOSING = re.compile(r"^[.,;:!?)\]]+")
 # In these a text is not what a reader reads as running text, or is used again elsewhere.
 LEFT_ALONE = (nodes.literal, nodes.literal_block, nodes.math, nodes.math_block, nodes.raw, nodes.title)
 
@@ -22,6 +28,24 @@ def pieces(text: str) -> list[nodes.Node]:
     ]
 
 
+def with_percent_kept(text: str) -> str:
+    """Join each per cent to the number before it, which may end the node before, by a space that does not break."""
+    return PERCENT.sub("\N{NO-BREAK SPACE}%", text)
+
+
+def keep_with_formula(text: nodes.Text) -> nodes.Text:
+    """Put a formula and what closes it into one span, if a text begins so; return the text that is left."""
+    siblings = text.parent.children
+    place = siblings.index(text)
+    closing = CLOSING.match(text)
+    if closing is None or place == 0 or not isinstance(siblings[place - 1], nodes.math):
+        return text
+    parent, rest = text.parent, nodes.Text(text[closing.end() :])
+    whole = nodes.inline("", "", siblings[place - 1].deepcopy(), nodes.Text(closing[0]), classes=["unbroken"])
+    parent[place - 1 : place + 1] = [whole, rest]
+    return rest
+
+
 def is_running_text(node: nodes.Node) -> bool:
     """Say whether none of what a node stands in is left alone."""
     while node.parent is not None:
@@ -31,8 +55,8 @@ def is_running_text(node: nodes.Node) -> bool:
     return True
 
 
-class KeepNumbersWhole(SphinxPostTransform):
-    """Put the numbers of equations into spans that the style sheet keeps on one line."""
+class KeepTogether(SphinxPostTransform):
+    """Put what belongs together into spans that the style sheet keeps on one line."""
 
     default_priority = 900  # outputs of cells are text of the page by then
     formats = ("html",)
@@ -40,11 +64,15 @@ class KeepNumbersWhole(SphinxPostTransform):
     def run(self, **_: Any) -> None:
         """Go through the texts of a page."""
         for text in list(self.document.findall(nodes.Text)):
-            if NUMBER.search(text) and is_running_text(text):
-                text.parent.replace(text, pieces(text))
+            if not is_running_text(text):
+                continue
+            left = keep_with_formula(text)
+            kept = with_percent_kept(left)
+            if NUMBER.search(kept) or kept != left:
+                left.parent.replace(left, pieces(kept))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx what is here."""
-    app.add_post_transform(KeepNumbersWhole)
+    app.add_post_transform(KeepTogether)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

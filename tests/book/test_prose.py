@@ -61,8 +61,8 @@ def test_the_exception_to_the_headline_has_the_shares_of_the_stored_maps(page: s
     of_row = [share("ch08_bases", f"load, rigid pairs, M, N = {basis}") for basis in ("1, 3", "2, 8")]
     text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
     said = re.search(
-        r"leaves (\S+) % of the map of Case I unstable at the rated torque; of the speeds at μ = 1 it is (\S+) % in the "
-        r"dissertation's basis and (\S+) % in the largest one tried",
+        r"leaves (\S+) % of the map of Case I unstable at the rated torque; of the speeds at μ = 1 it is (\S+) % in "
+        r"the dissertation's basis and (\S+) % in the largest one tried",
         text,
     )
     assert said is not None

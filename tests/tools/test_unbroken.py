@@ -3,7 +3,7 @@
 import pytest
 from docutils import nodes
 
-from tools.unbroken import is_running_text, pieces
+from tools.unbroken import is_running_text, keep_with_formula, pieces, with_percent_kept
 
 
 @pytest.mark.parametrize(
@@ -26,3 +26,34 @@ def test_code_is_left_alone(holder, running):
     text = nodes.Text("(3-20)")
     nodes.paragraph("", "", holder("", "", text))
     assert is_running_text(text) is running
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [
+        ("63.52 % of", "63.52\N{NO-BREAK SPACE}% of"),
+        (" % after a number that is quoted", "\N{NO-BREAK SPACE}% after a number that is quoted"),
+        ("unstable [%], a % sign", "unstable [%], a % sign"),
+    ],
+)
+def test_a_per_cent_stays_with_its_number(text, kept):
+    assert with_percent_kept(text) == kept
+
+
+def test_a_stop_stays_with_the_formula_before_it():
+    formula, text = nodes.math("", "k_2"), nodes.Text("), and so on.")
+    paragraph = nodes.paragraph("", "", nodes.Text("by ("), formula, text)
+    rest = keep_with_formula(text)
+    assert rest == " and so on."
+    assert paragraph.astext() == "by (k_2), and so on."
+    whole = paragraph[1]
+    assert whole["classes"] == ["unbroken"]
+    assert whole.astext() == "k_2),"
+
+
+@pytest.mark.parametrize("text", [" and so on", "-th"])
+def test_other_text_after_a_formula_is_left_alone(text):
+    node = nodes.Text(text)
+    paragraph = nodes.paragraph("", "", nodes.math("", "k"), node)
+    assert keep_with_formula(node) is node
+    assert len(paragraph) == 2
