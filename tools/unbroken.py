@@ -33,10 +33,14 @@ def with_percent_kept(text: str) -> str:
     return PERCENT.sub("\N{NO-BREAK SPACE}%", text)
 
 
+def place_of(node: nodes.Node) -> int:
+    """Return where a node stands in its parent: it and no other, for texts that read alike are equal."""
+    return next(place for place, child in enumerate(node.parent.children) if child is node)
+
+
 def keep_with_formula(text: nodes.Text) -> nodes.Text:
     """Put a formula and what closes it into one span, if a text begins so; return the text that is left."""
-    siblings = text.parent.children
-    place = siblings.index(text)
+    siblings, place = text.parent.children, place_of(text)
     closing = CLOSING.match(text)
     if closing is None or place == 0 or not isinstance(siblings[place - 1], nodes.math):
         return text
@@ -64,12 +68,13 @@ class KeepTogether(SphinxPostTransform):
     def run(self, **_: Any) -> None:
         """Go through the texts of a page."""
         for text in list(self.document.findall(nodes.Text)):
-            if not is_running_text(text):
+            if text.parent is None or not is_running_text(text):  # extensions leave texts that have no parent
                 continue
             left = keep_with_formula(text)
             kept = with_percent_kept(left)
             if NUMBER.search(kept) or kept != left:
-                left.parent.replace(left, pieces(kept))
+                place = place_of(left)
+                left.parent[place : place + 1] = pieces(kept)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -41,12 +41,13 @@ def test_a_per_cent_stays_with_its_number(text, kept):
 
 
 def test_a_stop_stays_with_the_formula_before_it():
-    formula, text = nodes.math("", "k_2"), nodes.Text("), and so on.")
-    paragraph = nodes.paragraph("", "", nodes.Text("by ("), formula, text)
+    first, text = nodes.Text("), and so on."), nodes.Text("), and so on.")
+    paragraph = nodes.paragraph("", "", nodes.math("", "k_1"), first, nodes.math("", "k_2"), text)
     rest = keep_with_formula(text)
     assert rest == " and so on."
-    assert paragraph.astext() == "by (k_2), and so on."
-    whole = paragraph[1]
+    assert paragraph.astext() == "k_1), and so on.k_2), and so on."
+    assert paragraph[1] is first  # though it reads alike
+    whole = paragraph[2]
     assert whole["classes"] == ["unbroken"]
     assert whole.astext() == "k_2),"
 
