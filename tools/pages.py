@@ -100,6 +100,8 @@ WITH_EXPONENT = re.compile(r"(?<![\w.])([-+−]?\d+(?:\.\d+)?)[eE]([-+]?\d+)(?![
 MINUS_ZERO = re.compile(r"(?<![\w.)])[-−](0(?:\.0+)?)(?![\d.\w])")
 # A hyphen before a number is a minus; one between two numbers is not, unless the second is an imaginary part.
 HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]}-])-(?=\d)|(?<=\d)-(?=[\d.]+i\b)")
+# A power of ten that stands as the unit of a printed value.
+POWER_AS_UNIT = re.compile(r"(?<=\d) (?=10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -139,6 +141,7 @@ def in_readers_digits(text: str) -> str:
 
     def change(part: str, formula: bool) -> str:
         part = _with_powers(part, formula)
+        part = part if formula else POWER_AS_UNIT.sub("·", part)
         return part if formula else HYPHEN_FOR_MINUS.sub("−", MINUS_ZERO.sub(r"\1", part))
 
     return _in_running_text(text, change)

@@ -25,6 +25,25 @@
   window.addEventListener("load", reachFigures);
   window.addEventListener("resize", reachFigures);
 
+  // Tables and equations that scroll say so (book.css has the words). Their size changes when MathJax has set them.
+  function sayWhatMoves() {
+    const isWide = (box) => box !== null && box.scrollWidth > box.clientWidth + 1;
+    for (const box of document.querySelectorAll(".bd-article :is(.pst-scrollable-table-container, .cell_output .text_html)")) {
+      box.classList.toggle("moves-sideways", isWide(box));
+      if (isWide(box)) box.setAttribute("tabindex", "0");
+    }
+    for (const box of document.querySelectorAll(".bd-article div.math")) {
+      const formula = box.querySelector('mjx-container[display="true"]');
+      box.classList.toggle("moves-sideways", isWide(box) || isWide(formula));
+    }
+  }
+
+  window.addEventListener("load", function () {
+    const watch = new ResizeObserver(() => window.requestAnimationFrame(sayWhatMoves));
+    document.querySelectorAll(".bd-article :is(.pst-scrollable-table-container, div.math)").forEach((box) => watch.observe(box));
+    sayWhatMoves();
+  });
+
   document.addEventListener("DOMContentLoaded", function () {
     // The entries are no list items, so that their frame is no list.
     document.querySelectorAll(".citation-list[role=list]").forEach((list) => list.removeAttribute("role"));

@@ -71,7 +71,8 @@ def multipliers(system: PeriodicSystem, method: Method | None = None) -> Complex
     """Floquet multipliers, eigenvalues of the transition matrix (2-8), largest modulus first.
 
     All have about the same absolute error, that of Φ. Of an overdamped motion in a long period no digit is left, and
-    what stands for its multiplier may be rounding: :func:`multiplier_errors` tells.
+    what stands for its multiplier may be rounding:
+    :func:`facegear.floquet.error_estimates.multiplier_errors` tells.
 
     Returns
     -------

@@ -541,6 +541,33 @@ def test_a_figure_that_moves_sideways_says_so(visit: Callable[..., Visit], width
     assert ("sideways" in hint) is said
 
 
+@pytest.mark.parametrize(
+    ("name", "width", "box"),
+    [
+        ("notebooks/90_ledger.html", NARROWEST, ".pst-scrollable-table-container"),
+        ("notebooks/04_one_pinion.html", NARROWEST, "div.math"),
+        ("notebooks/90_ledger.html", 1280, ".pst-scrollable-table-container"),
+    ],
+)
+def test_tables_and_equations_that_move_sideways_say_so(
+    visit: Callable[..., Visit], name: str, width: int, box: str
+) -> None:
+    page = visit(name, width=width).page
+    page.wait_for_timeout(1000)  # formulas are set after the page has loaded
+    wide, said = page.evaluate(
+        """(box) => {
+            const boxes = [...document.querySelectorAll(".bd-article " + box)];
+            const parts = (it) => [it, it.querySelector("mjx-container[display=true]")].filter((part) => part);
+            const wide = boxes.filter((it) => parts(it).some((part) => part.scrollWidth > part.clientWidth + 1));
+            const words = (it) => getComputedStyle(it, "::before").content;
+            return [wide.length, boxes.filter((it) => words(it).includes("sideways")).length];
+        }""",
+        box,
+    )
+    assert wide == said
+    assert wide > 0 or width == 1280
+
+
 def test_numbers_of_equations_stay_on_one_line(visit: Callable[..., Visit]) -> None:
     page = visit("nomenclature.html", width=NARROWEST).page
     numbers = page.locator(".unbroken").all()

@@ -15,6 +15,7 @@ from tests.book.open_cells import code_cells, is_open, needed, python
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST = 12  # lines of an open cell that a reader still takes in at once
+WIDEST = 86  # characters of a line that the column of a page has room for at 1280 pixels (book.css)
 CHAPTERS = sorted((ROOT / "notebooks").glob("[0o]*.ipynb"))  # and the page on systems of one's own
 
 chapters = pytest.mark.parametrize("path", CHAPTERS, ids=lambda path: path.stem)
@@ -71,6 +72,12 @@ def test_open_cells_are_short(path):
         if (lines := sum(1 for line in cell.source.splitlines() if line.strip())) > LONGEST
     }
     assert not too_long
+
+
+@pytest.mark.parametrize("path", [path for path in CHAPTERS if path.stem < "08"], ids=lambda path: path.stem)
+def test_lines_of_open_cells_fit_the_column_of_the_page(path):
+    lines = [line for cell in filter(is_open, code_cells(path)) for line in cell.source.splitlines()]
+    assert [line for line in lines if len(line) > WIDEST] == []
 
 
 def on_a_coarse_grid(source):

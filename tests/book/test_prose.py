@@ -48,3 +48,22 @@ def test_readme_has_the_shares_of_the_stored_maps() -> None:
     )
     assert said is not None
     assert said.groups() == (f"{shares[0]:.0f}", f"{shares[1]:.1f}")
+
+
+@pytest.mark.parametrize("page", ["README.md", "book/intro.md"])
+def test_the_exception_to_the_headline_has_the_shares_of_the_stored_maps(page: str) -> None:
+    def share(figure: str, model: str) -> float:
+        stored = load(ROOT / "data" / "reference" / f"{figure}.nc")
+        growth = stored.growth_rate[stored.model_name.values.tolist().index(model)]
+        return 100.0 * float((growth > 0.0).mean())
+
+    of_map = share("ch08_sharing", "pair; clock of the load")
+    of_row = [share("ch08_bases", f"load, rigid pairs, M, N = {basis}") for basis in ("1, 3", "2, 8")]
+    text = " ".join((ROOT / page).read_text(encoding="utf-8").split())
+    said = re.search(
+        r"leaves (\S+) % of the map of Case I unstable at the rated torque; of the speeds at μ = 1 it is (\S+) % in "
+        r"the dissertation's basis and (\S+) % in the largest one tried",
+        text,
+    )
+    assert said is not None
+    assert said.groups() == (f"{of_map:.0f}", f"{of_row[0]:.0f}", f"{of_row[1]:.1f}")

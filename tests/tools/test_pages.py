@@ -154,6 +154,7 @@ def test_caption_that_offers_numbers_itself_and_cells_without_figure_are_left_al
         ("1e-12; -2.5e+08 N/m", "10⁻¹²; −2.5·10⁸ N/m"),
         ("| 1.047e+04 | 5.6e-04 | 3e-2 |", "| 10470 | 0.00056 | 0.03 |"),
         ("$k_m$ = 1.5763e+08 N/m", "$k_m$ = 1.5763·10⁸ N/m"),
+        ("| 1.58 10⁸ N/m | 10⁸ N/m |", "| 1.58·10⁸ N/m | 10⁸ N/m |"),
         ("$k = 1.5e+08$", r"$k = 1.5\cdot 10^{8}$"),
         ("`rtol=1e-9` and\n```python\nx = 1e-9\n```", "`rtol=1e-9` and\n```python\nx = 1e-9\n```"),
         ("| -0.00 | −0 | -0.05 | 3-0 |", "| 0.00 | 0 | −0.05 | 3-0 |"),
