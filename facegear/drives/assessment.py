@@ -180,7 +180,8 @@ class Assessment:
             words += f" Worst: {self.mechanism}."
         open_cases = sum(not outcome.settled for outcome in self.outcomes)
         if open_cases:
-            words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn {"it" if open_cases == 1 else "them"}."
+            turned = "it" if open_cases == 1 else "them"
+            words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn {turned}."
         return words
 
     @property

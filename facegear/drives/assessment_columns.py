@@ -42,7 +42,14 @@ def response_columns(table: xr.Dataset) -> dict[str, list[object]]:
     }
     basis = ("nodal_circles", "nodal_diameters", "settled")
     of_model = ("contact", "force", "teeth", *basis)
-    headings = (*of_model, "speed_rpm", "pinion", *(_heading(n, u) for n, u in forces.items()))
+    # Whether the force has settled; whether the unstable speeds have is another question.
+    headings = (
+        *of_model[:-1],
+        "force_settled",
+        "speed_rpm",
+        "pinion",
+        *(_heading(n, u) for n, u in forces.items()),
+    )
     rows = [
         (
             *(str(table[name].values[model]) for name in ("contact", "force", "teeth")),

@@ -104,7 +104,11 @@ def parting(found: Sequence[DiskResponse], static: float, in_torsion: xr.Dataset
     str
         A sentence; empty where none says so.
     """
-    disk = [(parted(each.data, static), each.variant.name) for each in found if each.data is not None]
+    disk = [
+        (parted(each.data, static), f"{each.variant.name}{'' if each.settled else ', NOT SETTLED'}")
+        for each in found
+        if each.data is not None
+    ]
     places = []
     if disk:
         worst, name = max(disk, key=lambda each: (each[0].speeds, each[0].peaks))

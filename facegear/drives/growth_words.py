@@ -123,7 +123,7 @@ def _outcome(case: WorstCase) -> str:
     left = tuple(part for gap in gaps(case.swept, case.speeds) for part in cut(case.possible, gap))
     free = gaps(case.possible, case.speeds)
     rest = f"; not known at {told(left)}, where something may be unstable between {looked}" if left else ""
-    rest += f"; stable at {told(free)}" if free else "; nowhere known to be stable"
+    rest += f"; stable at {told(free)}" if free else "; at no speed known to be stable for all of its values"
     if not case.swept:
         return rest.removeprefix("; ")
     words = f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"

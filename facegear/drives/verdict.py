@@ -10,7 +10,7 @@ that is raised until its unstable speeds stand still (:mod:`facegear.drives.basi
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
@@ -276,4 +276,6 @@ def _left_out(file: DriveFile) -> str:
     return (
         f"Not included: {', '.join(missing)}. The driving force is the same at all speeds; all parameters are taken as "
         "exact; speeds outside the range are not looked at."
+        + " The tolerances of the file are left out here; facegear assess has them."
+        * any(astuple(file.tolerances))
     )

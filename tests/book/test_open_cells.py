@@ -74,7 +74,7 @@ def test_open_cells_are_short(path):
     assert not too_long
 
 
-@pytest.mark.parametrize("path", [path for path in CHAPTERS if path.stem < "08"], ids=lambda path: path.stem)
+@chapters
 def test_lines_of_open_cells_fit_the_column_of_the_page(path):
     lines = [line for cell in filter(is_open, code_cells(path)) for line in cell.source.splitlines()]
     assert [line for line in lines if len(line) > WIDEST] == []

@@ -199,7 +199,7 @@ class TestVerdict:
         assert (
             replace(found, worst={DEAD: everywhere})
             .over_tolerances[0]
-            .endswith("; nowhere known to be stable.")
+            .endswith("; at no speed known to be stable for all of its values.")
         )
 
     def test_a_tolerance_of_speed_that_alone_decides_is_named(self):
@@ -239,7 +239,7 @@ class TestVerdict:
 
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
-        assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn them.")
+        assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn it.")
 
 
 def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all():

@@ -298,9 +298,12 @@ def test_where_flanks_would_part_is_said_right_behind_the_verdict(tmp_path):
     static = 100.0
     worst, better = forced(1.0, parted=-101.0), forced(1.0, parted=-50.0)
     assert parting((better, worst), static, None).endswith(
-        f"in the disk's motion ({worst.variant.name}) at 2 of 2 speeds and 1 of the resonances between them, where "
-        "they are pulled by up to 0.2 times the static force; what becomes of the motion then it does not say."
+        f"in the disk's motion ({worst.variant.name}, NOT SETTLED) at 2 of 2 speeds and 1 of the resonances between "
+        "them, where they are pulled by up to 0.2 times the static force; what becomes of the motion then it does not "
+        "say."
     )
+    # With a basis that confirms it.
+    assert "NOT SETTLED" not in parting((forced(1234.0, parted=-101.0),), static, None)
     box = forced(1.0, parted=-1.0, peak=-5.0).data
     assert "PART: in torsion at 2 of 2 speeds and 2 of the resonances" in parting((), static, box)
     assert "pulled by up to 0.4 times the static force" in parting((), static, box)

@@ -11,6 +11,7 @@ from facegear.drives import verdict
 from facegear.drives.basis import BasisStep, SettledTongues
 from facegear.drives.drive_file import read_drive_file
 from facegear.drives.forces import PLACES
+from facegear.drives.tolerances import Tolerances
 from facegear.floquet.labels import Combination
 from facegear.floquet.modes import mean_growth_rate
 from facegear.floquet.multipliers import growth_rate
@@ -229,3 +230,12 @@ class TestWords:
 
 def stable_or(intervals):
     return case("Tregold", "follower", *intervals).found.tongues
+
+
+def test_a_report_says_that_it_leaves_tolerances_out():
+    file = read_drive_file(DRIVES / "case_1.yaml")
+    assert "tolerances" not in verdict._left_out(file)
+    given = replace(file, tolerances=Tolerances(stiffness=0.1))
+    assert verdict._left_out(given).endswith(
+        "The tolerances of the file are left out here; facegear assess has them."
+    )
