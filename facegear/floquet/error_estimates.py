@@ -80,6 +80,7 @@ def multiplier_errors(system: PeriodicSystem, method: Method | None = None) -> F
     Examples
     --------
     >>> import numpy as np
+    >>> from facegear.floquet.multipliers import multipliers
     >>> slow_and_fast = PeriodicSystem(np.eye(1), [[50.0]], np.eye(1), (), 100.0)
     >>> np.abs(multipliers(slow_and_fast)) > multiplier_errors(slow_and_fast)
     array([ True, False])

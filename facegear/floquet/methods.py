@@ -305,6 +305,7 @@ def with_method(method: Method | None, compute: Callable[[Method], T], otherwise
 
     Examples
     --------
+    >>> from facegear.floquet.multipliers import transition_matrix
     >>> drifting = PeriodicSystem([[1.0]], [[0.0]], [[0.0]], (), 1.0)
     >>> with_method(None, lambda method: (method, transition_matrix(drifting, method))[0])
     AdaptiveMagnus(tolerance=1e-09)

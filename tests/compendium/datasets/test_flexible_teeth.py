@@ -77,7 +77,7 @@ def test_figures_name_what_they_show(maps):
     shown = texts(draw.growth_maps(maps, "stiffness [x]"))
     assert all(words in shown for words in ("rigid", "flexible", "stiffness [x]"))
     largest = max(share for share, _ in arrays.shares(maps).values())
-    assert f"{largest:.2g} %" in shown
+    assert f"{largest:.2g}\N{NO-BREAK SPACE}%" in shown
     lengths = {"equal": {"fast": 20.0, "slow": 1.0}, "length": {"fast": 10.0, "slow": 0.5}}
     shown = texts(draw.bars(lengths, "share [%]"))
     assert all(words in shown for words in ("20.0", "0.5", "share [%]", "fast"))
