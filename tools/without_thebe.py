@@ -17,12 +17,16 @@ def without_thebe(scripts: Iterable[Any]) -> list[Any]:
     ----------
     scripts : iterable of str or sphinx.builders.html._assets._JavaScript
     """
-    return [script for script in scripts if "thebe" not in _words(script).lower()]
+    return [script for script in scripts if not _is_thebe(script)]
 
 
-def _words(script: Any) -> str:
-    """Name of the file of a script, or what it says where it has none."""
-    return f"{getattr(script, 'filename', script)} {getattr(script, 'attributes', {}).get('body', '')}"
+def _is_thebe(script: Any) -> bool:
+    """Say so by the name of a script's file, or by the variable that the one without a file sets.
+
+    Data of a page, such as the pictures of its sliders, are scripts too: letters alone may stand in them by chance.
+    """
+    body = getattr(script, "attributes", {}).get("body") or ""
+    return "thebe" in str(getattr(script, "filename", script)).lower() or "THEBE_JS_URL" in body
 
 
 def drop(_app: Sphinx, _page: str, _template: str, context: dict[str, Any], _doctree: Any) -> None:

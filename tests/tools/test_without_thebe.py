@@ -11,5 +11,6 @@ def script(filename, body=""):
 
 def test_only_those_of_thebe_are_dropped():
     kept = [script("_static/views.js"), script(None, "const DOCUMENTATION = 1"), "_static/code_links.js"]
+    kept += [script(None, "a picture in letters: iVBORtHeBe0KGgo")]
     dropped = [script("_static/sphinx-thebe.js"), script(None, 'const THEBE_JS_URL = "…"')]
     assert without_thebe([dropped[0], *kept, dropped[1]]) == kept
