@@ -122,12 +122,11 @@ class _Corner:
 class _Judged:
     """What corners tell of a cell: intervals of speed [rad/s].
 
-    Such as are swept, such as may be unstable, and those that a tongue may reach which stands at some corners only, or
-    at one of them with half the damping alone.
+    Such as are swept, and those that a tongue may reach which stands at some corners only, or at one of them with half
+    the damping alone.
     """
 
     swept: list[Range]
-    possible: list[Range]
     open: list[Range]
     weak: list[Range]
 
@@ -230,7 +229,7 @@ class BoxSearch:
         corners = [self._corner(springs, cell.around) for springs in cell.corners]
         judged = _judged(cell, corners)
         self.swept += judged.swept
-        self.possible += judged.possible
+        self.possible += judged.swept
         if cell.is_fine:
             self.possible += [*judged.open, *self._left(cell, corners)]
             return []
@@ -277,11 +276,7 @@ class BoxSearch:
         """Tongues with a part of the least damping, without those that stand with all of it."""
         low, _ = self._ends(is_damping)
         found = self._tongues(self._factors(springs, tuple(part * each for each in low)), around)
-        return tuple(
-            tongue
-            for tongue in found
-            if not any(t.lower < tongue.upper and tongue.lower < t.upper for t in least)
-        )
+        return _apart(found, least)
 
     def _keep(self, factors: Factors, found: tuple[Tongue, ...], around: Range) -> None:
         """Keep tongues of some factors, of a part of the range such as it does not cut."""
@@ -289,8 +284,7 @@ class BoxSearch:
             self.points[factors] = found
         elif inner := tuple(t for t in found if around[0] < t.lower and t.upper < around[1]):
             known = self.points.get(factors, ())
-            new = tuple(t for t in inner if not any(k.lower < t.upper and t.lower < k.upper for k in known))
-            self.points[factors] = known + new
+            self.points[factors] = known + _apart(inner, known)
 
     def _ends(self, wanted: Callable[[str], bool]) -> tuple[Factors, Factors]:
         """Lower and upper ends of the factors of those parts."""
@@ -329,20 +323,19 @@ def is_damping(words: str) -> bool:
 
 def _judged(cell: Cell, corners: Sequence[_Corner]) -> _Judged:
     """Say what tongues at the corners of a cell tell of its speeds."""
-    found = _Judged([], [], [], [])
+    found = _Judged([], [], [])
     for at_corners in zip(*(corner.found.values() for corner in corners), strict=True):
         everywhere = _everywhere(at_corners)
         for label, place in _places(cell, at_corners).items():
             if label in everywhere:
                 found.swept.append(place)
-                found.possible.append(place)
             seen = any(_stands(t, cell.speeds) for each in at_corners for t in each if t.label == label)
             if label not in everywhere or not seen:
                 # One that passes between the corners is halved, too: how fast it grows there is not known.
                 found.open.append(place)
-        rest = [(t.lower, t.upper) for each in at_corners for t in each if t.label not in everywhere]
-        found.swept.extend(rest)
-        found.possible.extend(rest)
+        found.swept.extend(
+            (t.lower, t.upper) for each in at_corners for t in each if t.label not in everywhere
+        )
     if cell.reach > 1.0:
         found.weak.extend(cell.reached(tongue) for corner in corners for tongue in corner.weak)
     return found
@@ -351,6 +344,13 @@ def _judged(cell: Cell, corners: Sequence[_Corner]) -> _Judged:
 def _stands(tongue: Tongue, speeds: Range) -> bool:
     """Whether a tongue stands at some of the speeds."""
     return tongue.lower < speeds[1] and speeds[0] < tongue.upper
+
+
+def _apart(found: Sequence[Tongue], others: Sequence[Tongue]) -> tuple[Tongue, ...]:
+    """Return those tongues that stand at no speed at which one of the others does."""
+    return tuple(
+        one for one in found if not any(_stands(one, (other.lower, other.upper)) for other in others)
+    )
 
 
 def _everywhere(at_corners: Sequence[Sequence[Tongue]]) -> set[str]:
