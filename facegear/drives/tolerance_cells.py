@@ -161,14 +161,20 @@ class BoxSearch:
     possible: list[Range] = field(default_factory=list)
     _seconds: float = 0.0
     _corners: dict[Factors, list[_Corner]] = field(default_factory=dict)
+    _traced: dict[Factors, tuple[Range, tuple[Tongue, ...]]] = field(default_factory=dict)
 
     def run(self) -> None:
         """Look at cells until all is settled, or no more work is allowed."""
+        cells = self._cells()
+        # What cells share is looked at once, over the speeds that any of them asks for.
+        widest = min(cell.around[0] for cell in cells), max(cell.around[1] for cell in cells)
         nominal = (1.0,) * len(self.parts)
-        own = self.points[nominal] = self._tongues(nominal, self.wide)
+        own = self.points[nominal] = self._tongues(nominal, widest)
         self.swept += [(tongue.lower, tongue.upper) for tongue in own]
         self.possible += self.swept
-        finer = [half for cell in self._cells() for half in self._halves(cell)]
+        for springs in sorted({corner for cell in cells for corner in cell.corners}):
+            self._corner(springs, widest)
+        finer = [half for cell in cells for half in self._halves(cell)]
         self._seconds = 0.0
         # The largest first: what is left at the end is small.
         number = count()
@@ -303,12 +309,16 @@ class BoxSearch:
 
     def _tongues(self, factors: Factors, around: Range) -> tuple[Tongue, ...]:
         """Trace tongues of one value; one of many may have two multipliers so close that they are known less well."""
+        if (known := self._traced.get(factors)) is not None and known[0] == around:
+            return known[1]
         model = self.at(factors)
         self._seconds += search_seconds(model, around)
         try:
-            return tongues(model, around, progress=False)
+            found = tongues(model, around, progress=False)
         except ArithmeticError:
-            return tongues(model, around, threshold=_ROUGH, progress=False)
+            found = tongues(model, around, threshold=_ROUGH, progress=False)
+        self._traced[factors] = around, found
+        return found
 
 
 def is_stiffness(words: str) -> bool:

@@ -22,7 +22,7 @@ from facegear.maps.peaks import largest_between
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest angle [rad] by which the fastest live motion turns from one sample to the next.
-SAMPLE_ANGLE = 0.2
+SAMPLE_ANGLE = 0.3
 FEWEST_SAMPLES = 64
 # A pair is followed if so many times its foretold coupling could make it unstable.
 _SAFETY = 4.0
@@ -34,6 +34,8 @@ _ROUNDS = 8
 # Between unstable samples the growth may differ from a straight line by this part of itself.
 _STRAIGHT = 0.25
 _MOST_HALVINGS = 40
+# Samples closer than this part of their speed tell nothing of the bend of the growth.
+_APART = 1e-6
 # Pairs of multipliers with a smaller product are left alone: nothing brings them back to 1 within a step.
 _DECAYED = 1e-6
 # Relative accuracy of borders and of the speed where two phases meet: far below 0.01 rpm.
@@ -217,20 +219,32 @@ def _near(
 
 def _maxima(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]:
     """Speeds of maxima between stable samples that may pass the threshold without any meeting."""
-    height = scan.radii - 1.0 - threshold
+    speeds, height = _parted(scan.speeds, scan.radii - 1.0 - threshold)
     middle, left, right = height[1:-1], height[:-2], height[2:]
-    # A parabola through three samples rises at most by an eighth of its bend above the middle one.
-    bend = 2.0 * middle - left - right
-    near = (middle < 0.0) & (middle >= left) & (middle >= right) & (middle + bend > 0.0)
+    near = (middle < 0.0) & (middle >= left) & (middle >= right)
+    # A parabola through three samples rises at most by its bend times a quarter of the square of the longer step above
+    # the middle one: an eighth of this.
+    steps = np.diff(speeds)
+    before, after = steps[:-1], steps[1:]
+    bend = ((middle - left) / before + (middle - right) / after) / (before + after)
+    near &= middle + 2.0 * bend * np.maximum(before, after) ** 2 > 0.0
 
     def radius(speed: float) -> float:
         return float(curve.spectral_radii(np.array([speed]))[0])
 
     resolution = SPEED_TOLERANCE * curve.lowest_speed
     return [
-        largest_between(radius, float(scan.speeds[i]), float(scan.speeds[i + 2]), resolution)[0]
+        largest_between(radius, float(speeds[i]), float(speeds[i + 2]), resolution)[0]
         for i in np.flatnonzero(near).tolist()
     ]
+
+
+def _parted(speeds: FloatArray, height: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Leave out samples so close to another one that between them rounding shows: of such a group the highest stays."""
+    group = np.cumsum(np.append(0, np.diff(speeds) > _APART * speeds[1:]))
+    order = np.lexsort((-height, group))
+    first = order[np.append(True, np.diff(group[order]) > 0)]
+    return speeds[first], height[first]
 
 
 class _Critical(NamedTuple):

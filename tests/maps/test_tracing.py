@@ -15,7 +15,7 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.maps import parallel, tracing
+from facegear.maps import parallel, scanning, tracing
 from facegear.maps.scanning import Scan, scan_of
 from facegear.maps.tracing import borders, search_seconds, tongues
 from facegear.mechanics.plate import Body
@@ -420,3 +420,41 @@ def test_cost_grows_with_size_and_range():
     assert search_seconds(small, (ends[0] / 4.0, ends[1])) > search_seconds(small, ends)
     with pytest.raises(ValueError, match="speeds must ascend"):
         search_seconds(small, ends[::-1])
+
+
+class Hump:
+    """Growth 1e-3 − (v − 2)² in a period, without any meeting."""
+
+    lowest_speed, highest_speed = 1.0, 3.0
+
+    @staticmethod
+    def spectral_radii(speeds):
+        return 1.0 + 1e-3 - (np.asarray(speeds) - 2.0) ** 2
+
+
+@pytest.mark.parametrize("beside", [0.02, 1e-4, 1e-8, 1e-12])
+def test_two_samples_close_together_beside_a_hump_do_not_hide_it(beside):
+    """A parabola through three samples of which two all but coincide bends as much as through any others."""
+    speeds = np.array([1.0, 1.955, 2.04, 2.04 + beside, 2.5, 3.0])
+    scan = Scan(speeds, Hump.spectral_radii(speeds))
+    assert (scan.radii < 1.0).all()
+    (found,) = scanning._maxima(Hump, scan, 1e-8)
+    assert found == pytest.approx(2.0, rel=1e-6)
+
+
+def test_samples_far_below_the_threshold_are_not_searched():
+    speeds = np.array([1.0, 1.9, 1.9 + 1e-9, 2.2, 3.0])
+    scan = Scan(speeds, Hump.spectral_radii(speeds) - 2.0)
+    assert scanning._maxima(Hump, scan, 1e-8) == []
+
+
+@pytest.mark.parametrize("angle", [0.2, 0.25, 0.3, 0.4])
+def test_a_tongue_between_a_slow_and_a_dying_motion_is_found_wherever_samples_lie(monkeypatch, angle):
+    """(1+7)/1 of this drive, 0.76 rpm wide, is not where the phases meet: with 0.3 rad it was missed."""
+    drive = Drive(27, 98, 3.175e-3)
+    body = Body(drive, 0.0342979519, 0.0374231916, nodal_circles=2, nodal_diameters=3)
+    load = MeshLoad(stiffness=0.132025752, damping=5.9420277e-6, mass=1.44288192)
+    monkeypatch.setattr(scanning, "SAMPLE_ANGLE", angle)
+    found = tongues(Transverse(body, load), rad_per_s([422.492858, 881.68634]), progress=False)
+    assert found[0].label == "(1+7)/1"
+    assert rpm([found[0].lower, found[0].upper]) == pytest.approx([443.0032, 443.7618], abs=1e-3)
