@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from facegear.floquet.eigenvectors import change, critical
 from facegear.floquet.multiplier_curves import MultiplierCurve
-from facegear.maps.peaks import largest_between
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest angle [rad] by which the fastest live motion turns from one sample to the next.
@@ -34,8 +33,6 @@ _ROUNDS = 8
 # Between unstable samples the growth may differ from a straight line by this part of itself.
 _STRAIGHT = 0.25
 _MOST_HALVINGS = 40
-# Samples closer than this part of their speed tell nothing of the bend of the growth.
-_APART = 1e-6
 # Pairs of multipliers with a smaller product are left alone: nothing brings them back to 1 within a step.
 _DECAYED = 1e-6
 # Relative accuracy of borders and of the speed where two phases meet: far below 0.01 rpm.
@@ -44,36 +41,61 @@ SPEED_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Speeds looked at, ascending, and the spectral radius at each."""
+    """Speeds looked at, ascending.
+
+    Attributes
+    ----------
+    speeds : array, shape (m,)
+        [rad/s].
+    radii : array, shape (m,)
+        Spectral radius at each.
+    slopes : array, shape (m,)
+        Derivative of its logarithm by the slowness 1/speed, following the largest multiplier; NaN where it has none.
+    """
 
     speeds: FloatArray
     radii: FloatArray
+    slopes: FloatArray
+
+    @classmethod
+    def of(cls, curve: MultiplierCurve, speeds: FloatArray) -> Scan:
+        """Look at ascending speeds within the range of a curve."""
+        parts = [_looked_at(curve, speeds[i : i + curve.batch]) for i in range(0, speeds.size, curve.batch)]
+        return cls(speeds, *np.concatenate(parts, axis=1)) if parts else cls(speeds, speeds, speeds)
 
     def with_speeds(self, curve: MultiplierCurve, speeds: Sequence[float] | FloatArray) -> Scan:
         """Return the scan with more speeds; those already there are left out."""
         added = np.unique(np.asarray(speeds, dtype=float))
         added = np.setdiff1d(added[(added > curve.lowest_speed) & (added < curve.highest_speed)], self.speeds)
-        if added.size == 0:
-            return self
-        return self.with_samples(Scan(added, curve.spectral_radii(added)))
+        return self.with_samples(Scan.of(curve, added))
 
     def with_samples(self, other: Scan) -> Scan:
         """Return the scan with those samples of another one that lie between its ends, each speed once."""
         inside = (other.speeds > self.speeds[0]) & (other.speeds < self.speeds[-1])
         speeds, order = np.unique(np.append(self.speeds, other.speeds[inside]), return_index=True)
-        return Scan(speeds, np.append(self.radii, other.radii[inside])[order])
+        radii, slopes = (
+            np.append(own, more[inside])[order]
+            for own, more in ((self.radii, other.radii), (self.slopes, other.slopes))
+        )
+        return Scan(speeds, radii, slopes)
+
+
+def _looked_at(curve: MultiplierCurve, speeds: FloatArray) -> FloatArray:
+    """Spectral radii and slopes of their logarithm by slowness at speeds (m,), shape (2, m)."""
+    values, right, left = critical(curve.transition_matrices(speeds))
+    change_of_value = np.einsum("vi,vij,vj->v", left, curve.slopes(speeds), right, optimize=True)
+    with np.errstate(all="ignore"):
+        return np.stack([np.abs(values), (change_of_value / values).real])
 
 
 def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) -> Scan:
-    """Spectral radii on a grid, at all meetings of multipliers that matter, and at extremes between samples."""
+    """Spectral radii on a grid, at all meetings of multipliers that matter, and wherever growth may pass between."""
     low, high = 1.0 / curve.highest_speed, 1.0 / curve.lowest_speed
     grid = curve.motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES)
     seeds = np.concatenate([grid, [1.0 / speed for speed in hints if low < 1.0 / speed < high]])
     meetings, looked_at = _meetings(curve, seeds, _steps(grid, seeds), threshold)
-    ends = np.array([curve.lowest_speed, curve.highest_speed])
-    scan = Scan(ends, curve.spectral_radii(ends)).with_samples(looked_at)
-    scan = scan.with_speeds(curve, 1.0 / meetings)
-    scan = scan.with_speeds(curve, _maxima(curve, scan, threshold))
+    scan = Scan.of(curve, np.array([curve.lowest_speed, curve.highest_speed])).with_samples(looked_at)
+    scan = _rising(curve, scan.with_speeds(curve, 1.0 / meetings), threshold)
     return scan.with_speeds(curve, _gaps(curve, scan, threshold))
 
 
@@ -93,7 +115,7 @@ def _meetings(
     Returns them and all samples that were looked at for it.
     """
     centres, reach, batch = seeds, _REACH * steps, curve.batch
-    found, speeds, radii = [], [], []
+    found, samples = [], []
     for _ in range(_ROUNDS):
         parts = [
             _foretold(curve, centres[i : i + batch], reach[i : i + batch], threshold)
@@ -101,8 +123,7 @@ def _meetings(
         ]
         meeting = np.concatenate([part[0] for part in parts])
         distance = np.concatenate([part[1] for part in parts])
-        speeds += [part[2].speeds for part in parts]
-        radii += [part[2].radii for part in parts]
+        samples += [part[2] for part in parts]
         # Neighbours foretell the same meeting: those that agree to a thousandth of the step taken are one.
         keep = _distinct(meeting, np.maximum(1e-3 * distance, 1e-12 * meeting))
         meeting, distance = meeting[keep], distance[keep]
@@ -112,7 +133,8 @@ def _meetings(
         centres, reach = meeting[moving], 0.5 * distance[moving]
         if centres.size == 0:
             break
-    return np.concatenate(found), Scan(np.concatenate(speeds), np.concatenate(radii))
+    columns = ((scan.speeds, scan.radii, scan.slopes) for scan in samples)
+    return np.concatenate(found), Scan(*np.concatenate(list(columns), axis=1))
 
 
 def _distinct(points: FloatArray, tolerance: FloatArray) -> FloatArray:
@@ -141,13 +163,15 @@ def _foretold(
     inside = (1.0 / centres >= curve.lowest_speed) & (1.0 / centres <= curve.highest_speed)
     centres, reach = centres[inside], reach[inside]
     if centres.size == 0:
-        return centres, reach, Scan(centres, centres)
+        return centres, reach, Scan(centres, centres, centres)
     values, direct, crossed = change(
         curve.transition_matrices(1.0 / centres), curve.slopes(1.0 / centres), _DECAYED
     )
-    samples = Scan(1.0 / centres, np.abs(values).max(axis=1))
     values = np.where(values == 0.0, 1e-300, values)
     rates = np.einsum("vii->vi", direct) / values
+    largest = np.abs(values).argmax(axis=1)[:, np.newaxis]
+    radii, slopes = (np.take_along_axis(part, largest, axis=1)[:, 0] for part in (np.abs(values), rates.real))
+    samples = Scan(1.0 / centres, radii, slopes)
     # Of a pair off the real axis and its conjugate, which says the same, one: both above the axis, or the second below.
     above = np.triu(np.ones(direct.shape[1:], dtype=bool), 1)
     below = np.triu(values.imag[:, np.newaxis] > 0.0)
@@ -217,34 +241,29 @@ def _near(
     return _Near(np.nonzero(near)[0], step[near], apart[near], turning[near], coupling[near], mean[near])
 
 
-def _maxima(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]:
-    """Speeds of maxima between stable samples that may pass the threshold without any meeting."""
-    speeds, height = _parted(scan.speeds, scan.radii - 1.0 - threshold)
-    middle, left, right = height[1:-1], height[:-2], height[2:]
-    near = (middle < 0.0) & (middle >= left) & (middle >= right)
-    # A parabola through three samples rises at most by its bend times a quarter of the square of the longer step above
-    # the middle one: an eighth of this.
-    steps = np.diff(speeds)
-    before, after = steps[:-1], steps[1:]
-    bend = ((middle - left) / before + (middle - right) / after) / (before + after)
-    near &= middle + 2.0 * bend * np.maximum(before, after) ** 2 > 0.0
+def _rising(curve: MultiplierCurve, scan: Scan, threshold: float) -> Scan:
+    """Halve intervals in which growth may pass the threshold that has not at their stable end, until it is seen to.
 
-    def radius(speed: float) -> float:
-        return float(curve.spectral_radii(np.array([speed]))[0])
-
-    resolution = SPEED_TOLERANCE * curve.lowest_speed
-    return [
-        largest_between(radius, float(speeds[i]), float(speeds[i + 2]), resolution)[0]
-        for i in np.flatnonzero(near).tolist()
-    ]
+    Where growth rises from a stable sample so that it could pass before the next one, it may fall again before that, or
+    do so where another motion has taken over. Between samples that bends like an arch stays below its tangents.
+    """
+    for _ in range(_MOST_HALVINGS):
+        height, slowness = np.log(scan.radii) - threshold, 1.0 / scan.speeds
+        step = np.diff(slowness)
+        ahead, back = height[:-1] + scan.slopes[:-1] * step, height[1:] - scan.slopes[1:] * step
+        open_ = _may_pass(height[:-1], ahead, height[1:]) | _may_pass(height[1:], back, height[:-1])
+        wide = np.abs(step) > SPEED_TOLERANCE * slowness[1:]
+        middles = 2.0 / (slowness[:-1] + slowness[1:])[open_ & wide]
+        if middles.size == 0:
+            break
+        scan = scan.with_samples(Scan.of(curve, middles))
+    return scan
 
 
-def _parted(speeds: FloatArray, height: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Leave out samples so close to another one that between them rounding shows: of such a group the highest stays."""
-    group = np.cumsum(np.append(0, np.diff(speeds) > _APART * speeds[1:]))
-    order = np.lexsort((-height, group))
-    first = order[np.append(True, np.diff(group[order]) > 0)]
-    return speeds[first], height[first]
+def _may_pass(here: FloatArray, foretold: FloatArray, there: FloatArray) -> NDArray[np.bool_]:
+    """Whether growth is foretold to pass from one sample to another, and that is not just what it does there."""
+    straight = (there > 0.0) & (np.abs(foretold - there) <= _STRAIGHT * there)
+    return np.asarray((here < 0.0) & (foretold > 0.0) & ~straight)
 
 
 class _Critical(NamedTuple):

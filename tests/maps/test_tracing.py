@@ -18,8 +18,12 @@ from facegear.geometry.drive import Drive
 from facegear.maps import parallel, scanning, tracing
 from facegear.maps.scanning import Scan, scan_of
 from facegear.maps.tracing import borders, search_seconds, tongues
+from facegear.mechanics.contact import Contact
+from facegear.mechanics.edge_stiffness import DrivingForce
+from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.properties import MeshLoad
+from facegear.mechanics.sharing import shared_load
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import rad_per_s, rpm
 from tests.comparing import agree
@@ -380,7 +384,7 @@ def test_samples_that_nearly_coincide_do_not_hide_the_peak():
     speeds = np.array([1.0, 1.6, 1.9, 1.9 * (1 + 1e-12), 2.3, 3.0])
     radii = Curve.spectral_radii(speeds)
     radii[3] = radii[2] * (1 - 1e-15)
-    ((lower, upper, peak),) = tracing._runs(Curve, Scan(speeds, radii), 1e-12)
+    ((lower, upper, peak),) = tracing._runs(Curve, Scan(speeds, radii, np.full(6, np.nan)), 1e-12)
     assert (lower, upper) == pytest.approx((1.5, 2.5), rel=1e-8)
     assert peak == pytest.approx(2.0, rel=1e-6)
 
@@ -422,30 +426,52 @@ def test_cost_grows_with_size_and_range():
         search_seconds(small, ends[::-1])
 
 
-class Hump:
-    """Growth 1e-3 − (v − 2)² in a period, without any meeting."""
+class Growing:
+    """Motions whose multipliers are 1 and some growth in a period that is a polynomial of the speed."""
 
-    lowest_speed, highest_speed = 1.0, 3.0
+    lowest_speed, highest_speed, batch = 1.0, 3.0, 64
 
-    @staticmethod
-    def spectral_radii(speeds):
-        return 1.0 + 1e-3 - (np.asarray(speeds) - 2.0) ** 2
+    def __init__(self, *growths):
+        self.growths = [np.polynomial.Polynomial(growth) for growth in growths]
+
+    def transition_matrices(self, speeds):
+        return np.stack([np.diag([1.0 + growth(v) for growth in self.growths]) for v in speeds])
+
+    def slopes(self, speeds):
+        return np.stack([np.diag([-(v**2) * growth.deriv()(v) for growth in self.growths]) for v in speeds])
 
 
-@pytest.mark.parametrize("beside", [0.02, 1e-4, 1e-8, 1e-12])
-def test_two_samples_close_together_beside_a_hump_do_not_hide_it(beside):
-    """A parabola through three samples of which two all but coincide bends as much as through any others."""
-    speeds = np.array([1.0, 1.955, 2.04, 2.04 + beside, 2.5, 3.0])
-    scan = Scan(speeds, Hump.spectral_radii(speeds))
+# 1e-3 − (v − 2)²: unstable from 1.968 to 2.032.
+HUMP = (1e-3 - 4.0, 4.0, -1.0)
+
+
+def runs_of(scan):
+    unstable = scan.radii > 1.0 + 1e-8
+    return int(np.count_nonzero(np.diff(np.append(0, unstable.astype(int))) == 1))
+
+
+@pytest.mark.parametrize("beside", [0.2, 0.02, 1e-4, 1e-8, 1e-12])
+def test_a_hump_between_stable_samples_is_seen_however_close_two_of_them_are(beside):
+    curve = Growing(HUMP)
+    scan = Scan.of(curve, np.array([1.0, 1.955, 2.04, 2.04 + beside, 2.5, 3.0]))
     assert (scan.radii < 1.0).all()
-    (found,) = scanning._maxima(Hump, scan, 1e-8)
-    assert found == pytest.approx(2.0, rel=1e-6)
+    assert runs_of(scanning._rising(curve, scan, 1e-8)) == 1
 
 
-def test_samples_far_below_the_threshold_are_not_searched():
-    speeds = np.array([1.0, 1.9, 1.9 + 1e-9, 2.2, 3.0])
-    scan = Scan(speeds, Hump.spectral_radii(speeds) - 2.0)
-    assert scanning._maxima(Hump, scan, 1e-8) == []
+@pytest.mark.parametrize("first", [1.7, 1.955, 1.9679])
+def test_a_hump_and_a_valley_beside_a_tongue_are_seen(first):
+    """Unstable from 1.968 to 2.032 and from 2.2 on, where another motion has taken over, and not between."""
+    curve = Growing(HUMP, (-1.1, 0.5))
+    scan = Scan.of(curve, np.array([1.0, first, 2.4, 3.0]))
+    assert runs_of(scan) == 1
+    scan = scanning._rising(curve, scan, 1e-8)
+    assert runs_of(scan.with_speeds(curve, scanning._gaps(curve, scan, 1e-8))) == 2
+
+
+def test_where_nothing_can_rise_far_enough_nothing_is_added():
+    curve = Growing((-2.0, *HUMP[1:]))
+    scan = Scan.of(curve, np.linspace(1.0, 3.0, 21) + 0.03)
+    assert scanning._rising(curve, scan, 1e-8).speeds.size == scan.speeds.size
 
 
 @pytest.mark.parametrize("angle", [0.2, 0.25, 0.3, 0.4])
@@ -458,3 +484,24 @@ def test_a_tongue_between_a_slow_and_a_dying_motion_is_found_wherever_samples_li
     found = tongues(Transverse(body, load), rad_per_s([422.492858, 881.68634]), progress=False)
     assert found[0].label == "(1+7)/1"
     assert rpm([found[0].lower, found[0].upper]) == pytest.approx([443.0032, 443.7618], abs=1e-3)
+
+
+@pytest.mark.parametrize("lowest_rpm", [300.0, 317.0, 330.0])
+def test_a_tongue_next_to_another_one_is_found_wherever_samples_lie(lowest_rpm):
+    """The motion that a follower force drives grows once more just below (17-1)/1: from 300 rpm on it was missed."""
+    body = Body(Drive(31, 155, 2.581e-3), 0.0215, 0.036, nodal_circles=1, nodal_diameters=4)
+    model = MeshOscillator(
+        body,
+        MeshLoad(stiffness=0.4771, damping=7.618e-6, mass=1.561),
+        contact=Contact(path=shared_load("equal"), sharing="each", rate="total"),
+        force=DrivingForce(power=76.49e3, pinion_speed=523.6, following="follower", harmonics=8),
+        mesh_stiffness=7.86637476e7,
+        mesh_damping=1.821e-7,
+    )
+    found = tongues(model, rad_per_s([lowest_rpm, 600.0]), threshold=1e-7, progress=False)
+    (tongue,) = (t for t in found if 515.0 < rpm(t.peak) < 526.5)
+    assert tongue.label == "mean 1"
+    assert rpm([tongue.lower, tongue.upper]) == pytest.approx([524.34, 525.58], abs=0.02)
+    # The spectral radius itself, by another method and without any scan.
+    for speed, unstable in ((524.0, False), (525.0, True), (526.2, False), (529.0, True)):
+        assert (growth_rate(model.system(float(rad_per_s(speed)))) > 0.0) == unstable
