@@ -4,7 +4,8 @@ A multiplier leaves the unit circle where it meets another one there, or where t
 the multipliers are followed: around each sampled speed the eigenvalue problem of the transition matrix is expanded
 to first order, Φ + δ Φ', which foretells for each pair of multipliers the speed where their phases meet and a bound
 of their modulus there. Where the bound reaches 1 the meeting itself becomes a sample, and foretells it better. A
-tongue is found at its centre in this way and not by the step of a grid.
+tongue is found at its centre in this way and not by the step of a grid. Where the partner of a motion dies much faster,
+growth is largest beside the meeting: between samples it is followed by its tangents.
 """
 
 from __future__ import annotations
