@@ -138,6 +138,24 @@ def stability_map(
     )
 
 
+def goes_by_rows(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> bool:
+    """Whether :func:`stability_map` computes rows, at low speeds at least; parts of them then take no longer in all.
+
+    Parameters
+    ----------
+    model : Model
+    speeds : ndarray, shape (S,)
+    parameter : str
+    values : ndarray, shape (V,)
+        As for :func:`stability_map`.
+    """
+    sweep = Sweep(model, parameter, tuple(values.tolist()), None)
+    if cells_of(sweep.models, sweep.probes, speeds) is not None:
+        return False
+    columns = columns_of(sweep, speeds)
+    return columns is None or columns.smooth_from(speeds) > 0
+
+
 _Run = Callable[[Sequence[Task], str, Workers], Iterator[tuple[int, FloatArray]]]
 
 

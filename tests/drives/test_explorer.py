@@ -12,8 +12,10 @@ from plotly.callbacks import InputDeviceState, Points
 from facegear.drives import cell_figure as cell
 from facegear.drives import explore, explorer
 from facegear.drives.cell import cell_detail
+from facegear.drives.map_figure import scale_end
 from facegear.drives.studies.gearbox import gearbox_study
 from facegear.drives.studies.oscillator import SQUARE, oscillator_study
+from facegear.drives.widgets import BEHIND
 from facegear.mechanics import cases
 from facegear.mechanics.classical import Mathieu
 from facegear.support.parameters import rad_per_s
@@ -64,6 +66,48 @@ def test_the_vertical_axis_can_be_exchanged_and_switches_its_control_off(widget)
     assert widget.figure.data[0].y[-1] == pytest.approx(0.2)
     assert widget.controls["damping_ratio"].disabled
     assert not widget.controls["depth"].disabled
+
+
+def test_on_an_exchanged_axis_the_cell_is_where_the_control_of_its_quantity_stands(widget):
+    click(widget, 2.0, 0.8)
+    widget.vertical.value = "damping_ratio"
+    rows, (shown,) = np.array(widget.figure.data[0].y), widget.figure.data[1].y
+    set_to = widget.controls["damping_ratio"].value
+    assert shown == rows[np.abs(rows - set_to).argmin()]
+    assert f"damping ratio ϑ {shown:.4g}" in text(widget.report)
+    assert "depth" not in text(widget.report)
+
+
+def test_nothing_of_the_old_axis_stays_while_the_map_is_refined(widget):
+    click(widget, 2.0, 0.8)
+
+    async def exchange():
+        widget.vertical.value = "damping_ratio"
+        while_refined = text(widget.report), widget.figure.data[1].y[0], BEHIND in widget.picture._dom_classes
+        while "refining" in text(widget.status):
+            await asyncio.sleep(0.01)
+        return while_refined
+
+    words, mark, behind = asyncio.run(exchange())
+    assert "unstable" not in words
+    assert mark <= 0.2
+    assert behind
+    assert "damping ratio" in text(widget.report)
+    assert BEHIND not in widget.picture._dom_classes
+
+
+@pytest.mark.parametrize("vertical", ["depth", "damping_ratio"])
+def test_colours_of_a_coarse_map_and_of_the_fine_one_mean_the_same(vertical):
+    study = oscillator_study()
+    settings, quantity = study.settings({"depth": 0.8}), study.swept(vertical)
+    axes = study.axes(settings, vertical)
+    ends, largest = [], []
+    for stage in explore.map_stages(study.model(settings), axes[0], quantity.parameter, axes[1]):
+        ends.append(scale_end(stage, max(ends, default=0.0)))
+        largest.append(float(stage.max()))
+    assert len(ends) > 1
+    assert len(set(ends)) == 1
+    assert ends[0] / 2.0 < largest[0] < largest[-1] <= ends[0]
 
 
 def test_controls_that_do_not_matter_are_switched_off(widget):
@@ -224,6 +268,13 @@ def test_what_is_out_of_range_or_no_number_is_refused_and_not_clipped(widget, wr
     np.testing.assert_allclose(shown_map(widget), before, rtol=1e-12)
     widget.entries["damping_ratio"].value = f"{value:g}"
     assert widget.message.value == ""
+
+
+def test_what_was_refused_is_gone_with_the_message(widget):
+    widget.entries["damping_ratio"].value = "5"
+    widget.vertical.value = "damping_ratio"
+    assert widget.message.value == ""
+    assert widget.entries["damping_ratio"].value == f"{widget.controls['damping_ratio'].value:g}"
 
 
 def test_a_field_is_switched_off_with_its_slider(widget):
