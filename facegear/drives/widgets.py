@@ -86,15 +86,22 @@ def typed(quantity: Quantity, text: str) -> float | int:
 
 #: Class of what still shows the settings before the last change.
 BEHIND = "facegear-behind"
-# Labels of controls are cut at the end by default, where symbol and unit stand; on a narrow page menus stand below
+# Labels of controls are cut at the end by default, where symbol and unit stand; on a narrow page controls stand below
 # theirs.
-WHOLE_LABELS = (
-    "<style>.facegear-explorer .widget-label {white-space: normal; overflow: visible; height: auto; "
-    "line-height: 1.25; align-self: center} "
-    f".{BEHIND} {{opacity: 0.35}} "
-    "@media (max-width: 40rem) {.facegear-explorer .widget-dropdown {flex-wrap: wrap; height: auto} "
-    ".facegear-explorer .widget-dropdown .widget-label {width: 100%!important; text-align: left}}</style>"
-)
+WHOLE_LABELS = """<style>
+.facegear-explorer .widget-label {
+  white-space: normal; overflow: visible; height: auto; line-height: 1.25; align-self: center;
+}
+.facegear-behind {opacity: 0.35}
+@media (max-width: 40rem) {
+  .facegear-explorer :is(.widget-dropdown, .widget-slider, .widget-text) {flex-wrap: wrap; height: auto}
+  .facegear-explorer :is(.widget-dropdown, .widget-slider, .widget-text) > .widget-label {
+    flex: 0 0 100%; width: 100% !important; text-align: left;
+  }
+  .facegear-explorer select {height: 2rem}
+  .facegear-explorer .slider-container {height: 1.4rem; margin-top: 0.8rem; min-width: 8rem}
+}
+</style>"""
 
 
 def small(text: str) -> str:
