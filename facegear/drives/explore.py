@@ -17,7 +17,7 @@ from facegear.drives.cell import UNSTABLE, CellDetail, cell_detail
 from facegear.drives.studies.study import Quantity, Settings, Study
 from facegear.floquet.models import Model, parameter_path, replace_parameter
 from facegear.maps.rows import Rows
-from facegear.maps.stability_map import goes_by_rows, stability_map
+from facegear.maps.stability_map import stability_map, way_of
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
@@ -46,27 +46,28 @@ def map_stages(
         Growth rates [1/s], with the period [s] of each speed as a coordinate. In the first, cells that are not yet
         computed have the value of a neighbour; attribute ``computed`` is the part of the cells that are final.
     """
+    way = way_of(model, speeds, parameter, values)
+    grown = _rows if way in ("columns", "rows") else _map
     columns = np.arange(min(_COLUMN_STEP // 2, speeds.size - 1), speeds.size, _COLUMN_STEP)
-    slow = goes_by_rows(model, speeds, parameter, values)
-    step = _ROW_STEP if slow else 1
+    step = 1 if way == "loads" else _ROW_STEP
     rows = np.arange(min(step // 2, values.size - 1), values.size, step)
-    coarse = (_rows if slow else _columns)(model, speeds[columns], parameter, values[rows])
+    coarse = grown(model, speeds[columns], parameter, values[rows])
     growth = coarse[_nearest(values.size, rows)][:, _nearest(speeds.size, columns)]
     name, periods = parameter_path(model, parameter)[-1], _periods(model, speeds)
 
     def stage(computed: float) -> xr.DataArray:
         return _labelled(name, values, speeds, growth.copy(), periods, computed)
 
-    yield stage(0.0 if slow else columns.size / speeds.size)
-    if not slow:
-        missing = np.setdiff1d(np.arange(speeds.size), columns)
+    yield stage(columns.size / speeds.size if way == "loads" else 0.0)
+    if way in ("loads", "columns"):
+        missing = np.setdiff1d(np.arange(speeds.size), columns if way == "loads" else [])
         if missing.size:
-            growth[:, missing] = _columns(model, speeds[missing], parameter, values)
+            growth[:, missing] = _map(model, speeds[missing], parameter, values)
             yield stage(1.0)
         return
     final = 0
     for part in _parts(values.size):
-        found = _rows(model, speeds, parameter, values[part])
+        found = grown(model, speeds, parameter, values[part])
         if part[0] % 2 == 0:
             # The row above each comes later, and is taken for its like until then.
             above = np.minimum(part + 1, values.size - 1)
@@ -86,8 +87,8 @@ def _parts(rows: int) -> list[NDArray[np.int64]]:
 
 def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
     """Return the last stage of :func:`map_stages` without those before it."""
-    slow = goes_by_rows(model, speeds, parameter, values)
-    growth = (_rows if slow else _columns)(model, speeds, parameter, values)
+    by_rows = way_of(model, speeds, parameter, values) == "rows"
+    growth = (_rows if by_rows else _map)(model, speeds, parameter, values)
     name = parameter_path(model, parameter)[-1]
     return _labelled(name, values, speeds, growth, _periods(model, speeds), 1.0)
 
@@ -113,14 +114,14 @@ def _labelled(
     )
 
 
-def _columns(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> FloatArray:
-    """Growth rates [1/s], (V, S), of a map whose columns, or all of whose cells, have much in common."""
+def _map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> FloatArray:
+    """Growth rates [1/s], (V, S)."""
     # One worker: starting others would take longer than the map.
     return stability_map(model, speeds, parameter, values, jobs=1, progress=False).values
 
 
 def _rows(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> FloatArray:
-    """Growth rates [1/s], (V, S), of a map that goes by rows, as the map has them, and nothing besides."""
+    """Growth rates [1/s], (V, S), cell by cell, without what :func:`stability_map` tells besides."""
     task = Rows(model, parameter_path(model, parameter), tuple(values.tolist()), tuple(speeds.tolist()), None)
     with one_thread():
         radii, periods = task.compute()

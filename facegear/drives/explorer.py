@@ -205,7 +205,6 @@ class MapExplorer:
             # On the new axis the cell is where the control of that quantity stands.
             values = first[first.dims[0]].values / quantity.unit
             self._place(self.column.value, int(np.abs(values - self.settings[quantity.name]).argmin()))
-        self._end = 0.0
         self._draw(first)
         self._mark()
         self.report.value = small("This cell is computed when the map is.")
@@ -297,11 +296,12 @@ class MapExplorer:
 
     def _draw(self, chart: xr.DataArray) -> None:
         self._chart = chart
-        # While a map is refined its colours never mean less than before.
-        self._end = scale_end(chart, self._end)
+        # A coarse map may miss where motions grow most: its colours mean at least what those of the map before did.
+        final = chart.attrs["computed"] == 1.0
+        end = scale_end(chart, 0.0 if final else float(self.figure.data[0].zmax))
         with self.figure.batch_update():
             self.figure.layout.yaxis.title.text = self._quantity.label
-            self.figure.data[0].update(heat(chart, self._quantity, self.study.speed, self._end))
+            self.figure.data[0].update(heat(chart, self._quantity, self.study.speed, end))
         self.status.value = small(f"refining, {chart.attrs['computed']:.0%} of the cells are final")
 
     def _cell(self) -> tuple[float, float]:

@@ -8,9 +8,10 @@ import pytest
 from facegear.drives.cell import cell_detail
 from facegear.drives.explore import map_stages, reading_map, unstable, view
 from facegear.drives.studies.drive import drive_study
+from facegear.drives.studies.gearbox import gearbox_study
 from facegear.drives.studies.oscillator import SQUARE as SQUARE_WAVE
 from facegear.drives.studies.oscillator import oscillator_study
-from facegear.maps.stability_map import stability_map
+from facegear.maps.stability_map import stability_map, way_of
 from facegear.mechanics import cases
 from facegear.mechanics.classical import Meissner, meissner_trace
 from facegear.support.parameters import rad_per_s
@@ -60,6 +61,21 @@ def test_a_slow_map_has_every_second_row_when_half_of_it_is_final():
     assert half.values[::2] == pytest.approx(expected[::2], abs=1e-8)
     # Those between are their neighbours'.
     assert half.values[1::2] == pytest.approx(half.values[:-1:2])
+
+
+@pytest.mark.parametrize(
+    ("study", "vertical", "way"),
+    [
+        (drive_study(), "stiffness", "loads"),
+        (drive_study(), "power", "columns"),
+        (drive_study(), "thickness_ratio", "rows"),
+        (gearbox_study(), "input_damping", "cells"),
+    ],
+)
+def test_what_a_map_goes_by(study, vertical, way):
+    settings, quantity = study.settings(), study.swept(vertical)
+    speeds, values = study.axes(settings, vertical)
+    assert way_of(study.model(settings), speeds, quantity.parameter, values) == way
 
 
 @pytest.mark.parametrize("parameter", ["thickness_ratio", "power"])

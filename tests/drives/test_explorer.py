@@ -96,18 +96,22 @@ def test_nothing_of_the_old_axis_stays_while_the_map_is_refined(widget):
     assert BEHIND not in widget.picture._dom_classes
 
 
-@pytest.mark.parametrize("vertical", ["depth", "damping_ratio"])
-def test_colours_of_a_coarse_map_and_of_the_fine_one_mean_the_same(vertical):
-    study = oscillator_study()
-    settings, quantity = study.settings({"depth": 0.8}), study.swept(vertical)
-    axes = study.axes(settings, vertical)
-    ends, largest = [], []
-    for stage in explore.map_stages(study.model(settings), axes[0], quantity.parameter, axes[1]):
-        ends.append(scale_end(stage, max(ends, default=0.0)))
-        largest.append(float(stage.max()))
-    assert len(ends) > 1
-    assert len(set(ends)) == 1
-    assert ends[0] / 2.0 < largest[0] < largest[-1] <= ends[0]
+def test_colours_of_a_coarse_map_mean_what_those_of_the_map_before_did(widget):
+    before = widget.figure.data[0].zmax
+    assert before == scale_end(explore.view(STUDY, 1.3, 0.5).chart)
+
+    async def change(value):
+        widget.controls["damping_ratio"].value = value
+        coarse = widget.figure.data[0].zmax
+        while "refining" in text(widget.status):
+            await asyncio.sleep(0.01)
+        return coarse
+
+    little = widget.controls["damping_ratio"].value + 0.001
+    assert asyncio.run(change(little)) == before == widget.figure.data[0].zmax
+    assert asyncio.run(change(0.2)) == before
+    assert widget.figure.data[0].zmax < before
+    assert np.nanmax(shown_map(widget)) <= widget.figure.data[0].zmax
 
 
 def test_controls_that_do_not_matter_are_switched_off(widget):
