@@ -25,7 +25,7 @@ CASES: tuple[tuple[str, Study, str, Mapping[str, Any]], ...] = (
     ("one pinion, pinion mass", drive_study(), "mass", {}),
     ("other teeth", drive_study(), "stiffness", {"pinion_teeth": 29, "gear_teeth": 145}),
     ("three pinions", drive_study(), "stiffness", {"pinions": "3"}),
-    ("power of 300 hp", drive_study(), "stiffness", {"power": 300.0}),
+    ("power of 220 kW", drive_study(), "stiffness", {"power": 220.0}),
     ("thickness on the vertical axis", drive_study(), "thickness_ratio", {}),
     ("power on the vertical axis", drive_study(), "power", {}),
     ("Mathieu's equation", oscillator_study(), "depth", {}),

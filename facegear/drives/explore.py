@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 
 from facegear.drives.cell import UNSTABLE, CellDetail, cell_detail
 from facegear.drives.studies.study import Quantity, Settings, Study
-from facegear.floquet.models import Model, replace_parameter
-from facegear.maps.stability_map import stability_map
+from facegear.floquet.models import Model, parameter_path, replace_parameter
+from facegear.maps.rows import Rows
+from facegear.maps.stability_map import stability_map, way_of
+from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
-# Cells of the first stage lie this many columns and rows apart, and slow maps are filled so many rows at a time: a row
-# takes little longer than a few cells of it. First every second row, so that half the time gives the whole picture.
+# Cells of the first stage lie this many columns and rows apart, and slow maps are filled so many rows at a time: first
+# every second row, so that half the time gives the whole picture.
 _COLUMN_STEP, _ROW_STEP, _SLOW_ROWS = 3, 5, 10
 
 
@@ -44,27 +46,28 @@ def map_stages(
         Growth rates [1/s], with the period [s] of each speed as a coordinate. In the first, cells that are not yet
         computed have the value of a neighbour; attribute ``computed`` is the part of the cells that are final.
     """
+    way = way_of(model, speeds, parameter, values)
+    grown = _rows if way in ("columns", "rows") else _map
     columns = np.arange(min(_COLUMN_STEP // 2, speeds.size - 1), speeds.size, _COLUMN_STEP)
-    fast = _only_loads_change(model, float(speeds[-1]), parameter, values)
-    step = 1 if fast else _ROW_STEP
+    step = 1 if way == "loads" else _ROW_STEP
     rows = np.arange(min(step // 2, values.size - 1), values.size, step)
-    coarse = _chart(model, speeds[columns], parameter, values[rows])
-    growth = coarse.values[_nearest(values.size, rows)][:, _nearest(speeds.size, columns)]
-    periods = _periods(model, speeds)
+    coarse = grown(model, speeds[columns], parameter, values[rows])
+    growth = coarse[_nearest(values.size, rows)][:, _nearest(speeds.size, columns)]
+    name, periods = parameter_path(model, parameter)[-1], _periods(model, speeds)
 
     def stage(computed: float) -> xr.DataArray:
-        return _labelled(coarse.dims[0], values, speeds, growth.copy(), periods, computed)
+        return _labelled(name, values, speeds, growth.copy(), periods, computed)
 
-    yield stage(columns.size / speeds.size if fast else 0.0)
-    if fast:
-        missing = np.setdiff1d(np.arange(speeds.size), columns)
+    yield stage(columns.size / speeds.size if way == "loads" else 0.0)
+    if way in ("loads", "columns"):
+        missing = np.setdiff1d(np.arange(speeds.size), columns if way == "loads" else [])
         if missing.size:
-            growth[:, missing] = _chart(model, speeds[missing], parameter, values).values
+            growth[:, missing] = _map(model, speeds[missing], parameter, values)
             yield stage(1.0)
         return
     final = 0
     for part in _parts(values.size):
-        found = _chart(model, speeds, parameter, values[part]).values
+        found = grown(model, speeds, parameter, values[part])
         if part[0] % 2 == 0:
             # The row above each comes later, and is taken for its like until then.
             above = np.minimum(part + 1, values.size - 1)
@@ -84,8 +87,10 @@ def _parts(rows: int) -> list[NDArray[np.int64]]:
 
 def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
     """Return the last stage of :func:`map_stages` without those before it."""
-    chart = _chart(model, speeds, parameter, values)
-    return _labelled(chart.dims[0], values, speeds, chart.values, _periods(model, speeds), 1.0)
+    by_rows = way_of(model, speeds, parameter, values) == "rows"
+    growth = (_rows if by_rows else _map)(model, speeds, parameter, values)
+    name = parameter_path(model, parameter)[-1]
+    return _labelled(name, values, speeds, growth, _periods(model, speeds), 1.0)
 
 
 def _periods(model: Model, speeds: FloatArray) -> FloatArray:
@@ -109,24 +114,22 @@ def _labelled(
     )
 
 
-def _chart(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
+def _map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> FloatArray:
+    """Growth rates [1/s], (V, S)."""
     # One worker: starting others would take longer than the map.
-    return stability_map(model, speeds, parameter, values, jobs=1, progress=False)
+    return stability_map(model, speeds, parameter, values, jobs=1, progress=False).values
+
+
+def _rows(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> FloatArray:
+    """Growth rates [1/s], (V, S), cell by cell, without what :func:`stability_map` tells besides."""
+    task = Rows(model, parameter_path(model, parameter), tuple(values.tolist()), tuple(speeds.tolist()), None)
+    with one_thread():
+        radii, periods = task.compute()
+    return np.asarray(np.log(radii) / periods)
 
 
 def _nearest(size: int, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.asarray(np.abs(np.arange(size)[:, np.newaxis] - chosen).argmin(axis=1))
-
-
-def _only_loads_change(model: Model, speed: float, parameter: str, values: FloatArray) -> bool:
-    """Whether the constant matrices and the shape vectors stay along a column, which makes it fast."""
-    one, other = (replace_parameter(model, parameter, float(v)).system(speed) for v in values[[0, -1]])
-    return all(
-        np.array_equal(getattr(one, name), getattr(other, name)) for name in ("mass", "damping", "stiffness")
-    ) and all(
-        np.array_equal(a.shape.coefficients, b.shape.coefficients)
-        for a, b in zip(one.loads, other.loads, strict=True)
-    )
 
 
 def unstable(chart: xr.DataArray) -> NDArray[np.bool_]:

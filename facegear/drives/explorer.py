@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -18,12 +18,14 @@ from matplotlib.figure import Figure
 from facegear.drives.cell import cell_detail
 from facegear.drives.cell_figure import RING, cell_figure, described, draw_detail, rows
 from facegear.drives.explore import View, map_stages, reading_map, unstable
-from facegear.drives.map_figure import heat, map_figure
+from facegear.drives.map_figure import heat, map_figure, scale_end
 from facegear.drives.studies.study import Quantity, Study
 from facegear.drives.widgets import (
+    BEHIND,
     WHOLE_LABELS,
     entry_of,
     look,
+    menu_of,
     refused,
     said,
     shown,
@@ -60,7 +62,7 @@ def picture(view: View) -> Figure:
         view.chart[view.chart.dims[0]] / vertical.unit,
         growth,
         cmap=GROWTH,
-        norm=Normalize(0.0, max(float(growth.max(fill_value=0.0) or 0.0), 1e-9)),
+        norm=Normalize(0.0, scale_end(view.chart)),
         shading="nearest",
         rasterized=True,
     )
@@ -119,12 +121,8 @@ class MapExplorer:
             for control in (*study.controls, study.speed)
             if isinstance(control, Quantity)
         }
-        self.vertical = ipywidgets.Dropdown(
-            options=[(quantity.label, quantity.name) for quantity in study.sweepable],
-            value=study.vertical,
-            description="vertical axis",
-            **look(),
-        )
+        swept = [(quantity.label, quantity.name) for quantity in study.sweepable]
+        self.vertical = menu_of("vertical axis", swept, study.vertical)
         self.column, self.row = ipywidgets.IntSlider(**look()), ipywidgets.IntSlider(**look())
         for slider in (self.column, self.row):
             slider.readout, slider.continuous_update = False, False
@@ -135,6 +133,7 @@ class MapExplorer:
         self.saved = ipywidgets.HTML()
         # Plotly's widget loses what is changed before a page shows it (Voilà shows it last): complete from the start.
         self._turn = 0
+        self._write: dict[str, Callable[[Any], None]] = {}
         self._quantity = study.swept(study.vertical)
         self._model, axes = self._begun(self._quantity)
         self._chart = reading_map(self._model, *axes)
@@ -184,6 +183,7 @@ class MapExplorer:
 
         entry.observe(read, "value")
         slider.observe(write, "value")
+        self._write[quantity.name] = write
 
     def refresh(self) -> None:
         """Compute the map for what the controls say, or say why there is none."""
@@ -196,9 +196,19 @@ class MapExplorer:
             self._refuse(problem)
             return
         self.message.value = ""
+        for write in self._write.values():
+            # What was refused is nowhere any more.
+            write(None)
         self._turn += 1
-        self._model, self._quantity = model, quantity
+        exchanged, self._model, self._quantity = quantity != self._quantity, model, quantity
+        if exchanged:
+            # On the new axis the cell is where the control of that quantity stands.
+            values = first[first.dims[0]].values / quantity.unit
+            self._place(self.column.value, int(np.abs(values - self.settings[quantity.name]).argmin()))
         self._draw(first)
+        self._mark()
+        self.report.value = small("This cell is computed when the map is.")
+        self.picture.add_class(BEHIND)
         _in_pieces(self._refine(stages, self._turn))
 
     def _begun(self, quantity: Quantity) -> tuple[Model, tuple[FloatArray, str, FloatArray]]:
@@ -282,29 +292,43 @@ class MapExplorer:
                 )
         except _REFUSALS as problem:
             self._refuse(problem)
+            self.report.value, self.picture.value = small("This cell has not been computed."), ""
 
     def _draw(self, chart: xr.DataArray) -> None:
         self._chart = chart
+        # A coarse map may miss where motions grow most: its colours mean at least what those of the map before did.
+        final = chart.attrs["computed"] == 1.0
+        end = scale_end(chart, 0.0 if final else float(self.figure.data[0].zmax))
         with self.figure.batch_update():
             self.figure.layout.yaxis.title.text = self._quantity.label
-            self.figure.data[0].update(heat(chart, self._quantity, self.study.speed))
+            self.figure.data[0].update(heat(chart, self._quantity, self.study.speed, end))
         self.status.value = small(f"refining, {chart.attrs['computed']:.0%} of the cells are final")
+
+    def _cell(self) -> tuple[float, float]:
+        """Speed and value of the chosen cell [SI]."""
+        speed = float(self._chart["speed"][self.column.value])
+        return speed, float(self._chart[self._chart.dims[0]][self.row.value])
+
+    def _mark(self) -> None:
+        """Mark the chosen cell."""
+        speed, value = self._cell()
+        with self.figure.batch_update():
+            self.figure.data[1].x = [speed / self.study.speed.unit]
+            self.figure.data[1].y = [value / self._quantity.unit]
+        self.column.description = f"{self.study.speed.label}: {speed / self.study.speed.unit:.4g}"
+        self.row.description = f"{self._quantity.label}: {value / self._quantity.unit:.4g}"
 
     def _show_cell(self) -> None:
         """Mark the chosen cell and show what happens in it."""
-        quantity = self._quantity
+        quantity, (speed, value) = self._quantity, self._cell()
         assert quantity.parameter is not None
-        speed = float(self._chart["speed"][self.column.value])
-        value = float(self._chart[self._chart.dims[0]][self.row.value])
-        with self.figure.batch_update():
-            self.figure.data[1].x = [speed / self.study.speed.unit]
-            self.figure.data[1].y = [value / quantity.unit]
-        self.column.description = f"{self.study.speed.label}: {speed / self.study.speed.unit:.4g}"
-        self.row.description = f"{quantity.label}: {value / quantity.unit:.4g}"
+        self._mark()
+        self.picture.remove_class(BEHIND)
         try:
             detail = cell_detail(replace_parameter(self._model, quantity.parameter, value), speed)
         except _REFUSALS as problem:
             self._refuse(problem)
+            self.report.value, self.picture.value = small("This cell has not been computed."), ""
             return
         words = described(detail, value, quantity, self.study.speed)
         self.report.value = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import plotly.graph_objects as go
@@ -15,8 +16,27 @@ from facegear.plotting.style import GROWTH, INK, VERMILION
 _COLOURS = [[k / 10, to_hex(GROWTH(k / 10))] for k in range(11)]
 
 
-def heat(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> dict[str, Any]:
-    """Turn a map into what Plotly draws: unstable growth rates as colours, all of them to hover over."""
+# Where a scale of colours may end, times a power of ten.
+_ENDS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+def scale_end(chart: xr.DataArray, lowest: float = 0.0) -> float:
+    """Round number at which the colours of a map end [1/s], at least `lowest`.
+
+    The largest growth rate of a coarse map is not that of the fine one: their round numbers mostly are the same.
+
+    Examples
+    --------
+    >>> scale_end(xr.DataArray([[-3.0, 43.7]]))
+    50.0
+    """
+    largest = max(float(chart.max()), lowest, 1e-9)
+    power = 10.0 ** math.floor(math.log10(largest))
+    return next(end for end in _ENDS if end * power >= largest * (1.0 - 1e-9)) * power
+
+
+def heat(chart: xr.DataArray, quantity: Quantity, speed: Quantity, end: float) -> dict[str, Any]:
+    """Turn a map into what Plotly draws: unstable growth rates as colours up to `end`, all of them to hover over."""
     growth = chart.values
     # Gaps are None: in JSON, which goes to the page, there is no NaN.
     shown = growth.astype(object)
@@ -27,14 +47,14 @@ def heat(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> dict[str, 
         "z": shown.tolist(),
         "customdata": growth,
         "zmin": 0.0,
-        "zmax": max(float(growth.max()), 1e-9),
+        "zmax": end,
     }
 
 
 def map_figure(chart: xr.DataArray, quantity: Quantity, speed: Quantity) -> go.FigureWidget:
     """Map and the mark of a cell."""
     heatmap = go.Heatmap(
-        **heat(chart, quantity, speed),
+        **heat(chart, quantity, speed, scale_end(chart)),
         colorscale=_COLOURS,
         colorbar={"title": {"text": "growth rate [1/s]", "side": "right"}},
         hovertemplate="%{x:.4g}, %{y:.4g}<br>growth rate %{customdata:.3g} 1/s<extra></extra>",

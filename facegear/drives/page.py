@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import html
 import io
+import re
 import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -118,6 +119,11 @@ def _with_code(words: str) -> str:
     return "".join(shown)
 
 
+def _with_minus(cell: str) -> str:
+    """Put the sign of a negative number for the hyphen before it."""
+    return re.sub(r"^-(?=\d)", "\N{MINUS SIGN}", cell)
+
+
 @dataclass(frozen=True)
 class Table:
     """Rows under headings.
@@ -140,7 +146,8 @@ class Table:
         room = 'style="padding: 0.2em 0.6em"'
         head = "".join(f'<th scope="col" {room}>{as_html(heading)}</th>' for heading in self.headings)
         body = "".join(
-            f"<tr>{''.join(f'<td {room}>{as_html(cell)}</td>' for cell in row)}</tr>" for row in self.rows
+            f"<tr>{''.join(f'<td {room}>{as_html(_with_minus(cell))}</td>' for cell in row)}</tr>"
+            for row in self.rows
         )
         return (
             '<div class="table" style="overflow-x: auto" tabindex="0" role="region" '

@@ -146,7 +146,7 @@ def files(found: Findings, folder: str | Path) -> Section:
         A part that could not be written is named with the reason, and does not keep the others back.
     """
     written, refused = export.write_parts(parts_of(found), folder)
-    points = [f"`{path.name}` ({path.stat().st_size / 1024:.0f} kB)" for path in written]
+    points = [f"`{path.name}` ({max(1, round(path.stat().st_size / 1024))} kB)" for path in written]
     points += [f"`{name}` was not written: {reason}" for name, reason in refused.items()]
     words = Paragraph("The tables and arrays of this report, and the tooth, for other programs.")
     return Section(_FILES, (words, Listing(tuple(points))))

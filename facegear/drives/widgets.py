@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from html import escape
 from typing import Any
 
@@ -11,20 +12,23 @@ from facegear.drives.studies.study import Choice, Control, Quantity
 from facegear.plotting.style import GREY, INK, VERMILION
 
 
-def look() -> dict[str, Any]:
+def look(label: str = "17rem") -> dict[str, Any]:
     """Width of a widget and of its label."""
     return {
         "layout": ipywidgets.Layout(width="98%"),
-        "style": {"description_width": "17rem"},
+        "style": {"description_width": label},
     }
+
+
+def menu_of(label: str, options: Sequence[Any], value: Any) -> Any:
+    """Return a menu, with a label short enough that its options are not cut."""
+    return ipywidgets.Dropdown(options=options, value=value, description=label, **look("10rem"))
 
 
 def widget_of(control: Control) -> Any:
     """Return the menu or slider of a control. A slider shows no number: :func:`entry_of` does, and takes any."""
     if isinstance(control, Choice):
-        return ipywidgets.Dropdown(
-            options=list(control.options), value=control.value, description=control.label, **look()
-        )
+        return menu_of(control.label, control.options, control.value)
     limits = {"min": control.lowest, "max": control.highest, "step": control.step, "value": control.value}
     kind = ipywidgets.IntSlider if control.whole else ipywidgets.FloatSlider
     if control.whole:
@@ -80,11 +84,24 @@ def typed(quantity: Quantity, text: str) -> float | int:
     return int(number)
 
 
-# Labels of controls are cut at the end by default, where symbol and unit stand.
-WHOLE_LABELS = (
-    "<style>.facegear-explorer .widget-label {white-space: normal; overflow: visible; height: auto; "
-    "line-height: 1.25; align-self: center}</style>"
-)
+#: Class of what still shows the settings before the last change.
+BEHIND = "facegear-behind"
+# Labels of controls are cut at the end by default, where symbol and unit stand; on a narrow page controls stand below
+# theirs.
+WHOLE_LABELS = """<style>
+.facegear-explorer .widget-label {
+  white-space: normal; overflow: visible; height: auto; line-height: 1.25; align-self: center;
+}
+.facegear-behind {opacity: 0.35}
+@media (max-width: 40rem) {
+  .facegear-explorer :is(.widget-dropdown, .widget-slider, .widget-text) {flex-wrap: wrap; height: auto}
+  .facegear-explorer :is(.widget-dropdown, .widget-slider, .widget-text) > .widget-label {
+    flex: 0 0 100%; width: 100% !important; text-align: left;
+  }
+  .facegear-explorer select {height: 2rem}
+  .facegear-explorer .slider-container {height: 1.4rem; margin-top: 0.8rem; min-width: 8rem}
+}
+</style>"""
 
 
 def small(text: str) -> str:

@@ -199,10 +199,16 @@ class Columns:
 
     @cached_property
     def _turning(self) -> tuple[ComplexArray, ComplexArray]:
-        """Exponents over slowness of the first and of the last value, slow ones first."""
+        """Exponents over slowness of the first and of the last value, slow ones first.
+
+        Growth is left out, at the ends already: a motion that begins to grow between them turns no other way.
+        """
         first, last = (
-            exponents[exponents.imag >= 0.0]
-            for exponents in (self.motions[0].exponents, self.motions[-1].exponents)
+            np.minimum(exponents.real, 0.0) + 1j * exponents.imag
+            for exponents in (
+                motions.exponents[motions.exponents.imag >= 0.0]
+                for motions in (self.motions[0], self.motions[-1])
+            )
         )
         return first[np.argsort(first.imag)], last[np.argsort(last.imag)]
 

@@ -2,7 +2,8 @@
 
 At one value, transition matrices are smooth functions of the slowness 1/speed, however roughly they depend on the
 parameter: on a number of teeth, or on a torque that moves the instants at which pairs begin and end. Matrices of many
-speeds are computed together, and interpolated along slowness where that takes fewer of them.
+speeds are computed together, and interpolated along slowness where that takes fewer of them. Of few speeds a series
+would spare too little: they are computed cell by cell, neighbouring rows together.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from facegear.floquet.columns import interpolated_spectral_radii
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.error_estimates import rounding_error
-from facegear.floquet.methods import Method, with_method
+from facegear.floquet.methods import Collocation, Method, with_method
 from facegear.floquet.models import Model, replace_at
 from facegear.floquet.multiplier_curves import FrozenMotions
 from facegear.floquet.multipliers import transition_matrices
@@ -27,9 +28,12 @@ from facegear.maps.likeness import same_layout
 from facegear.maps.parallel import parts_of
 from facegear.support.types import FloatArray
 
-# Speeds whose matrices are computed together: beyond these, periods differ too much for a common step.
+# Matrices that are computed together: beyond these, periods differ too much for a common step. Collocation looks itself
+# which of any number go together.
 _TOGETHER = 16
-# Cells that are computed, and kept on disk, together, if a row has fewer.
+# Rows of at most so many speeds are computed cell by cell.
+_FEW = 64
+# Cells that are computed, and kept on disk, together, if two such rows have fewer.
 _CELLS = 32
 
 
@@ -73,18 +77,54 @@ class Rows:
         """Largest moduli of the multipliers [-], and periods [s], shape (2, rows, speeds)."""
         speeds = np.array(self.speeds)
         # Models are built here, in the process that uses them: what they prepare may be most of the work.
-        rows = (_row(replace_at(self.model, self.path, value), speeds, self.method) for value in self.values)
-        return np.stack(list(rows), axis=1)
+        models = [replace_at(self.model, self.path, value) for value in self.values]
+        if speeds.size <= _FEW:
+            return _cell_by_cell(models, speeds, self.method)
+        return np.stack([_row(model, speeds, self.method) for model in models], axis=1)
 
 
 def in_rows(
     model: Model, path: tuple[str, ...], values: Sequence[float], speeds: FloatArray, method: Method | None
 ) -> Iterator[tuple[slice, Rows]]:
     """Group values, each group with its place among them."""
-    size = max(1, _CELLS // speeds.size)
+    size = max(2 if speeds.size <= _FEW else 1, _CELLS // speeds.size)
     for start in range(0, len(values), size):
         part = tuple(values[start : start + size])
         yield slice(start, start + len(part)), Rows(model, path, part, tuple(speeds.tolist()), method)
+
+
+def _cell_by_cell(models: Sequence[Model], speeds: FloatArray, method: Method | None) -> FloatArray:
+    """Spectral radii and periods of several models at speeds (S,), shape (2, rows, S)."""
+    systems = [[model.system(speed) for speed in speeds.tolist()] for model in models]
+    periods = [[system.period for system in row] for row in systems]
+    radii = np.empty((len(models), speeds.size))
+    for rows in _of_one_layout(systems):
+        # Speed by speed: neighbours are then of similar periods.
+        found = _radii([systems[row][column] for column in range(speeds.size) for row in rows], method)
+        radii[rows] = found.reshape(speeds.size, len(rows)).T
+    return np.stack([radii, periods])
+
+
+def _of_one_layout(systems: Sequence[Sequence[PeriodicSystem]]) -> list[list[int]]:
+    """Numbers of rows whose first systems have the same loads and breakpoints."""
+    found: list[list[int]] = []
+    for number, row in enumerate(systems):
+        for those in found:
+            if same_layout(systems[those[0]][0], row[0]):
+                those.append(number)
+                break
+        else:
+            found.append([number])
+    return found
+
+
+def _radii(systems: list[PeriodicSystem], method: Method | None) -> FloatArray:
+    """Spectral radii of systems (K,)."""
+
+    def scaled(chosen: Method) -> list[FloatArray]:
+        return [chosen.scaled_transition_matrices(Family(group)) for group in _alike(systems, chosen)]
+
+    return np.concatenate([spectral_radii(matrices) for matrices in with_method(method, scaled)])
 
 
 def _row(model: Model, speeds: FloatArray, method: Method | None) -> FloatArray:
@@ -130,14 +170,15 @@ def _periods(model: Model, speeds: FloatArray) -> FloatArray:
 def _matrices(model: Model, slowness: FloatArray, method: Method) -> FloatArray:
     """Transition matrices at values of slowness (K,), shape (K, d, d)."""
     systems = [model.system(speed) for speed in (1.0 / slowness).tolist()]
-    return np.concatenate([transition_matrices(group, method) for group in _alike(systems)])
+    return np.concatenate([transition_matrices(group, method) for group in _alike(systems, method)])
 
 
-def _alike(systems: list[PeriodicSystem]) -> Iterator[list[PeriodicSystem]]:
-    """Neighbours with the same loads and breakpoints, few enough to be of similar periods."""
+def _alike(systems: list[PeriodicSystem], method: Method) -> Iterator[list[PeriodicSystem]]:
+    """Neighbours with the same loads and breakpoints, few enough for the method to take together."""
+    most = len(systems) if isinstance(method, Collocation) else _TOGETHER
     start = 0
     for number, system in enumerate(systems):
-        if number - start == _TOGETHER or not same_layout(systems[start], system):
+        if number - start == most or not same_layout(systems[start], system):
             yield systems[start:number]
             start = number
     yield systems[start:]

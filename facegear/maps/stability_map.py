@@ -21,6 +21,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import version
+from typing import Literal
 
 import numpy as np
 import xarray
@@ -136,6 +137,30 @@ def stability_map(
             "facegear_version": version("facegear"),
         },
     )
+
+
+Way = Literal["cells", "loads", "columns", "rows"]
+"""What :func:`stability_map` goes by; "loads" are columns along which nothing else changes, the cheapest."""
+
+
+def way_of(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> Way:
+    """Find by what :func:`stability_map` goes, for who wants a map in parts; rows may be those of low speeds alone.
+
+    Parameters
+    ----------
+    model : Model
+    speeds : ndarray, shape (S,)
+    parameter : str
+    values : ndarray, shape (V,)
+        As for :func:`stability_map`.
+    """
+    sweep = Sweep(model, parameter, tuple(values.tolist()), None)
+    if cells_of(sweep.models, sweep.probes, speeds) is not None:
+        return "cells"
+    columns = columns_of(sweep, speeds)
+    if columns is None or columns.smooth_from(speeds) > 0:
+        return "rows"
+    return "columns" if columns.loads is None else "loads"
 
 
 _Run = Callable[[Sequence[Task], str, Workers], Iterator[tuple[int, FloatArray]]]

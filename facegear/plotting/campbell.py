@@ -10,6 +10,9 @@ from matplotlib.figure import Figure
 from facegear.plotting.style import GREY, GROWTH, INK, VERMILION, panels, styled
 from facegear.support.parameters import rpm
 
+# Part of the axis of speeds that a name above the frame takes.
+_APART = 0.11
+
 
 @styled
 def campbell(data: xr.Dataset) -> Figure:
@@ -30,6 +33,8 @@ def campbell(data: xr.Dataset) -> Figure:
         points = ax.scatter(speed, row, c=decrement, cmap=GROWTH, norm=shades, s=9, zorder=2)
     mesh = data["mesh_frequency"].values
     top = 1.06 * float(np.nanmax(frequency))
+    before: float | None = None
+    raised = 0
     for harmonic in np.unique(data["crossing_harmonic"].values).tolist():
         line = harmonic * mesh
         # In proportion to speed: straight up to where it leaves the frame.
@@ -37,17 +42,19 @@ def campbell(data: xr.Dataset) -> Figure:
         ax.plot(
             [speed[0], float(np.interp(end, line, speed))], [line[0], end], "--", color=INK, linewidth=1.0
         )
-        # One below the other, so that steep lines keep their names apart.
-        height = min((1.0 - 0.07 * (harmonic - 1)) * top, line[-1])
+        leaves = float(np.interp(end, line, speed))
+        # Above the frame, where nothing else is; where the next line leaves near by, one name above the other.
+        raised = 0 if before is None or before - leaves > _APART * float(np.ptp(speed)) else raised + 1
+        before = leaves if end == top else None
         ax.annotate(
             f"{harmonic} × mesh",
-            (float(np.interp(height, line, speed)), height),
-            xytext=(4, -2),
+            (leaves, end),
+            xytext=(0, 3 + 10 * raised) if end == top else (3, 0),
             textcoords="offset points",
-            va="top",
+            ha="center" if end == top else "left",
+            va="bottom" if end == top else "center",
             fontsize=8,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-            zorder=4,  # above the motions, whose lines would strike it through
+            annotation_clip=False,
         )
     at = rpm(data["crossing_speed"].values)
     met = data["crossing_harmonic"].values * np.interp(at, speed, mesh)

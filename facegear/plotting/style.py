@@ -113,7 +113,27 @@ def draw_border(axes: Axes, speed: Any, value: Any, growth: Any) -> None:
         axes.contour(speed, value, growth, levels=[0.0], colors=INK, linewidths=0.7)
 
 
-def growth_bar(figure: Figure, axes: Sequence[Axes], drawn: Any) -> None:
+def darkest(growth: Any) -> float:
+    """Growth rate of the darkest colour: the largest, unless nine unstable cells in ten stay below a third of it.
+
+    Parameters
+    ----------
+    growth : ndarray
+        Growth rates of all cells on one scale [1/s].
+
+    Examples
+    --------
+    >>> darkest(np.array([-1.0, 2.0, 5.0]))
+    5.0
+    """
+    unstable = growth[growth > 0.0]
+    if not unstable.size:
+        return 1e-9
+    largest, most = float(unstable.max()), float(np.quantile(unstable, 0.9))
+    return most if 3.0 * most < largest else largest
+
+
+def growth_bar(figure: Figure, axes: Sequence[Axes], drawn: Any, *, beyond: bool = False) -> None:
     """Put the scale of growth rates below the lowest map, as near whatever the height of the figure.
 
     Parameters
@@ -123,6 +143,8 @@ def growth_bar(figure: Figure, axes: Sequence[Axes], drawn: Any) -> None:
         What it stands for.
     drawn : matplotlib.cm.ScalarMappable
         Whose colours it explains.
+    beyond : bool
+        Whether some cells grow faster than its end, which an arrow says.
     """
     height = figure.get_figheight()
     figure.colorbar(
@@ -134,6 +156,7 @@ def growth_bar(figure: Figure, axes: Sequence[Axes], drawn: Any) -> None:
         aspect=40,
         fraction=0.25 / height,
         pad=0.15 / height,
+        extend="max" if beyond else "neither",
     )
 
 

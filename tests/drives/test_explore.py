@@ -7,10 +7,14 @@ import pytest
 
 from facegear.drives.cell import cell_detail
 from facegear.drives.explore import map_stages, reading_map, unstable, view
+from facegear.drives.studies.drive import drive_study
+from facegear.drives.studies.gearbox import gearbox_study
 from facegear.drives.studies.oscillator import SQUARE as SQUARE_WAVE
 from facegear.drives.studies.oscillator import oscillator_study
-from facegear.maps.stability_map import stability_map
+from facegear.maps.stability_map import stability_map, way_of
+from facegear.mechanics import cases
 from facegear.mechanics.classical import Meissner, meissner_trace
+from facegear.support.parameters import rad_per_s
 
 SQUARE = Meissner(depth=0.6, duty=0.4)
 FREQUENCIES = np.linspace(0.4, 2.6, 23)
@@ -50,13 +54,42 @@ def test_last_stage_is_the_map_and_the_first_one_agrees_where_it_is_computed(par
 
 
 def test_a_slow_map_has_every_second_row_when_half_of_it_is_final():
-    model, values = replace(SQUARE, damping_ratio=0.02), np.linspace(0.01, 0.2, 9)
-    stages = list(map_stages(model, FREQUENCIES, "damping_ratio", values))
-    (half,) = (stage for stage in stages if stage.attrs["computed"] == pytest.approx(5 / 9))
+    model, values = cases.FIGURES["4.4a"].model(), np.linspace(0.02, 0.09, 17)
+    stages = list(map_stages(model, rad_per_s(np.linspace(150.0, 900.0, 12)), "thickness_ratio", values))
+    (half,) = (stage for stage in stages if stage.attrs["computed"] == pytest.approx(9 / 17))
     expected = stages[-1].values
     assert half.values[::2] == pytest.approx(expected[::2], abs=1e-8)
     # Those between are their neighbours'.
     assert half.values[1::2] == pytest.approx(half.values[:-1:2])
+
+
+@pytest.mark.parametrize(
+    ("study", "vertical", "way"),
+    [
+        (drive_study(), "stiffness", "loads"),
+        (drive_study(), "power", "columns"),
+        (drive_study(), "thickness_ratio", "rows"),
+        (gearbox_study(), "input_damping", "cells"),
+    ],
+)
+def test_what_a_map_goes_by(study, vertical, way):
+    settings, quantity = study.settings(), study.swept(vertical)
+    speeds, values = study.axes(settings, vertical)
+    assert way_of(study.model(settings), speeds, quantity.parameter, values) == way
+
+
+@pytest.mark.parametrize("parameter", ["thickness_ratio", "power"])
+def test_a_map_in_stages_is_the_map(parameter):
+    model = drive_study().model(drive_study().settings({"power": 500.0}))
+    speeds = rad_per_s(np.linspace(400.0, 1000.0, 30))
+    values = {"thickness_ratio": np.linspace(0.02, 0.04, 12), "power": np.linspace(0.0, 9e5, 12)}[parameter]
+    *_, last = map_stages(model, speeds, parameter, values)
+    expected = stability_map(model, speeds, parameter, values, jobs=1, progress=False)
+    assert last.dims == expected.dims
+    np.testing.assert_allclose(last.values, expected.values, atol=1e-7)
+    np.testing.assert_allclose(
+        reading_map(model, speeds, parameter, values).values, expected.values, atol=1e-7
+    )
 
 
 def test_view_is_of_the_cell_that_was_asked_for():

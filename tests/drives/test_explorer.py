@@ -12,8 +12,10 @@ from plotly.callbacks import InputDeviceState, Points
 from facegear.drives import cell_figure as cell
 from facegear.drives import explore, explorer
 from facegear.drives.cell import cell_detail
+from facegear.drives.map_figure import scale_end
 from facegear.drives.studies.gearbox import gearbox_study
 from facegear.drives.studies.oscillator import SQUARE, oscillator_study
+from facegear.drives.widgets import BEHIND
 from facegear.mechanics import cases
 from facegear.mechanics.classical import Mathieu
 from facegear.support.parameters import rad_per_s
@@ -64,6 +66,52 @@ def test_the_vertical_axis_can_be_exchanged_and_switches_its_control_off(widget)
     assert widget.figure.data[0].y[-1] == pytest.approx(0.2)
     assert widget.controls["damping_ratio"].disabled
     assert not widget.controls["depth"].disabled
+
+
+def test_on_an_exchanged_axis_the_cell_is_where_the_control_of_its_quantity_stands(widget):
+    click(widget, 2.0, 0.8)
+    widget.vertical.value = "damping_ratio"
+    rows, (shown,) = np.array(widget.figure.data[0].y), widget.figure.data[1].y
+    set_to = widget.controls["damping_ratio"].value
+    assert shown == rows[np.abs(rows - set_to).argmin()]
+    assert f"damping ratio ϑ {shown:.4g}" in text(widget.report)
+    assert "depth" not in text(widget.report)
+
+
+def test_nothing_of_the_old_axis_stays_while_the_map_is_refined(widget):
+    click(widget, 2.0, 0.8)
+
+    async def exchange():
+        widget.vertical.value = "damping_ratio"
+        while_refined = text(widget.report), widget.figure.data[1].y[0], BEHIND in widget.picture._dom_classes
+        while "refining" in text(widget.status):
+            await asyncio.sleep(0.01)
+        return while_refined
+
+    words, mark, behind = asyncio.run(exchange())
+    assert "unstable" not in words
+    assert mark <= 0.2
+    assert behind
+    assert "damping ratio" in text(widget.report)
+    assert BEHIND not in widget.picture._dom_classes
+
+
+def test_colours_of_a_coarse_map_mean_what_those_of_the_map_before_did(widget):
+    before = widget.figure.data[0].zmax
+    assert before == scale_end(explore.view(STUDY, 1.3, 0.5).chart)
+
+    async def change(value):
+        widget.controls["damping_ratio"].value = value
+        coarse = widget.figure.data[0].zmax
+        while "refining" in text(widget.status):
+            await asyncio.sleep(0.01)
+        return coarse
+
+    little = widget.controls["damping_ratio"].value + 0.001
+    assert asyncio.run(change(little)) == before == widget.figure.data[0].zmax
+    assert asyncio.run(change(0.2)) == before
+    assert widget.figure.data[0].zmax < before
+    assert np.nanmax(shown_map(widget)) <= widget.figure.data[0].zmax
 
 
 def test_controls_that_do_not_matter_are_switched_off(widget):
@@ -224,6 +272,13 @@ def test_what_is_out_of_range_or_no_number_is_refused_and_not_clipped(widget, wr
     np.testing.assert_allclose(shown_map(widget), before, rtol=1e-12)
     widget.entries["damping_ratio"].value = f"{value:g}"
     assert widget.message.value == ""
+
+
+def test_what_was_refused_is_gone_with_the_message(widget):
+    widget.entries["damping_ratio"].value = "5"
+    widget.vertical.value = "damping_ratio"
+    assert widget.message.value == ""
+    assert widget.entries["damping_ratio"].value == f"{widget.controls['damping_ratio'].value:g}"
 
 
 def test_a_field_is_switched_off_with_its_slider(widget):

@@ -116,3 +116,10 @@ def test_a_mistake_of_ours_is_no_section():
 
     with pytest.raises(KeyError):
         attempted("Maps", fails)
+
+
+def test_a_table_shows_the_sign_of_a_negative_number_and_keeps_hyphens():
+    shown = Table(("change", "width"), (("half-way", "-3.02"), ("(2-1)/1", "4")), "Changes").as_html()
+    assert "\N{MINUS SIGN}3.02" in shown
+    assert "half-way" in shown
+    assert "(2-1)/1" in shown

@@ -14,6 +14,7 @@ from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.radau import Radau
 from facegear.maps.rows import in_rows
 from facegear.maps.stability_map import stability_map
+from facegear.mechanics import cases
 from facegear.mechanics.gearboxes import FIGURES
 from facegear.mechanics.torsional import Torsional
 from facegear.support.parameters import rad_per_s
@@ -94,3 +95,14 @@ def test_rows_of_few_speeds_are_grouped():
     places, groups = zip(*in_rows(Uneven(), ("part",), values, np.array([1.0, 2.0]), None), strict=True)
     assert [place.stop - place.start for place in places] == [16, 16, 8]
     assert [value for group in groups for value in group.values] == list(values)
+
+
+def test_rows_of_few_speeds_are_taken_together_and_are_those_of_another_method():
+    """Thickness scales the frequencies of the disk: neighbouring rows differ, and each cell has its own panels."""
+    model = cases.FIGURES["4.4a"].model()
+    speeds, values = rad_per_s(np.linspace(150.0, 1000.0, 12)), [0.02, 0.03, 0.05, 0.08]
+    chart = stability_map(model, speeds, "thickness_ratio", values, jobs=1)
+    for row, column in ((0, 11), (1, 5), (2, 0), (3, 7)):
+        own = replace_parameter(model, "thickness_ratio", values[row])
+        alone = growth_rate(own.system(float(speeds[column])), Radau())
+        assert float(chart[row, column]) == pytest.approx(alone, abs=1e-6)

@@ -114,7 +114,7 @@ def mesh_period(data: xr.Dataset) -> Figure:
         top.set_title(_LAW[law])
         bottom.set_xlabel("$t/T_0$")
     axes[0].set_ylabel("mesh stiffness over $k_m$")
-    axes[2].set_ylabel("transmission error less mean [µm]")
+    axes[2].set_ylabel("transmission error\nless mean [µm]")
     axes[1].legend(loc="best")
     return figure
 

@@ -26,6 +26,8 @@ from facegear.plotting.style import (
     styled,
 )
 
+# Distance of a number from its point [pt].
+_BESIDE = 12.0
 _PAPER = {"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8}
 _RANGES = ((BLUE, "o"), (VERMILION, "s"))
 _SPEED = "speed of the face gear [rpm]"
@@ -248,13 +250,11 @@ def trade_off(data: xr.Dataset, allowable: float) -> Figure:
     """
     figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
     ax = figure.subplots()
-    # Names of the left line stand on its left, those of the right one on its right.
-    beside: tuple[dict[str, Any], ...] = (
-        {"xytext": (-6, -5), "ha": "right", "va": "top"},
-        {"xytext": (6, 5), "ha": "left", "va": "bottom"},
-    )
-    lines = zip(_RANGES, data["highest_rpm"].values, beside, strict=True)
-    for (colour, marker), highest, side in lines:
+    named = [
+        n for n in data["pinion_teeth"].values if n in data["pinion_teeth"].values[[0, -1]] or n % 4 == 0
+    ]
+    drawn = []
+    for (colour, marker), highest in zip(_RANGES, data["highest_rpm"].values, strict=True):
         part = data.sel(highest_rpm=highest)
         thickness, stress = part["critical_thickness"] * 1e3, part["root_stress"] / 1e6
         ax.plot(
@@ -266,19 +266,32 @@ def trade_off(data: xr.Dataset, allowable: float) -> Figure:
             label=f"up to {highest:g} rpm",
             linewidth=0.9,
         )
-        for teeth in data["pinion_teeth"].values:
-            if teeth in (data["pinion_teeth"].values[[0, -1]]) or teeth % 4 == 0:
+        drawn.append((colour, np.stack([thickness.values, stress.values], axis=1)))
+    ax.axhline(allowable / 1e6, color=INK, linestyle=":", linewidth=1.6, zorder=1.2, label=r"$\sigma_Y/SF$")
+    ax.set(xlabel="critical thickness $h_{cr}$ [mm]", ylabel=r"$\sigma_{max}$ [MPa]", ylim=(0, None))
+    ax.margins(y=0.08)
+    # Numbers stand beside their lines, away from the other one: right of the first as it runs, left of the second.
+    for (colour, points), turned in zip(drawn, (1.0, -1.0), strict=True):
+        places = ax.transData.transform(points) * 72.0 / figure.dpi
+        along = np.gradient(places, axis=0)
+        beside = turned * np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(*along.T)[:, None]
+        taken: list[Any] = []
+        # From the last one on, so that its number is there, and none upon another.
+        for number in np.flatnonzero(np.isin(data["pinion_teeth"].values, named))[::-1].tolist():
+            centre = places[number] + _BESIDE * beside[number]
+            if all(np.hypot(*(centre - other)) > _BESIDE for other in taken):
+                taken.append(centre)
                 ax.annotate(
-                    f"{teeth}",
-                    (float(thickness.sel(pinion_teeth=teeth)), float(stress.sel(pinion_teeth=teeth))),
+                    f"{data['pinion_teeth'].values[number]}",
+                    tuple(points[number]),
+                    xytext=tuple(_BESIDE * beside[number]),
                     textcoords="offset points",
+                    ha="center",
+                    va="center",
                     fontsize=8,
                     color=colour,
                     bbox=_PAPER,
-                    **side,
                     zorder=1.5,  # below the points and lines, so that it hides none
                 )
-    ax.axhline(allowable / 1e6, color=INK, linestyle=":", linewidth=1.6, label=r"$\sigma_Y/SF$")
-    ax.set(xlabel="critical thickness $h_{cr}$ [mm]", ylabel=r"$\sigma_{max}$ [MPa]", ylim=(0, None))
     ax.legend(loc="best")
     return figure

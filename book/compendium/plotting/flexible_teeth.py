@@ -17,6 +17,7 @@ from facegear.plotting.style import (
     INK,
     ORANGE,
     VERMILION,
+    darkest,
     draw_unstable,
     panels,
     styled,
@@ -41,15 +42,6 @@ def _hatch_gaps(ax: Axes, value: FloatArray) -> None:
         ax.axhspan(*ends, facecolor="none", edgecolor=GREY, hatch="///", linewidth=0.0)
 
 
-def _darkest(growth: FloatArray) -> float:
-    """Growth rate of the darkest colour: the largest, unless nine unstable cells in ten stay below a third of it."""
-    unstable = growth[growth > 0.0]
-    if not unstable.size:
-        return 1e-9
-    largest, most = float(unstable.max()), float(np.quantile(unstable, 0.9))
-    return most if 3.0 * most < largest else largest
-
-
 @styled
 def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int = 3) -> Figure:
     """Draw maps of several models on one scale of colours, each with the unstable share of its cells.
@@ -60,7 +52,7 @@ def growth_maps(data: xr.Dataset, label: str, scale: float = 1.0, columns: int =
     names = data.model_name.values.tolist()
     rows = -(-len(names) // columns)
     figure, axes = panels(rows, min(columns, len(names)), 2.8 * rows + 0.8, sharex=True, sharey=True)
-    largest = _darkest(data.growth_rate.values)
+    largest = darkest(data.growth_rate.values)
     speed, value = data.speed.values, data.value.values * scale
     for place, (ax, name) in enumerate(zip(axes, names, strict=False)):
         growth = data.growth_rate.isel(model=place).values

@@ -128,7 +128,7 @@ def contact_points(tooth: xr.Dataset) -> Figure:
     )
     side.set(xlabel="distance from the face gear's axis [mm]", ylabel="axial [mm]")
     side.set_title("(b) from the side", loc="left")
-    side.legend(loc="lower right")
+    side.legend(loc="lower left")
     return figure
 
 

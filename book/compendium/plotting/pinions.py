@@ -215,9 +215,12 @@ def positions(chart: xr.Dataset, zones: Sequence[float]) -> Figure:
             )
     ax.plot([], [], "|-", color=VERMILION, label="traced")
     ax.set(xlabel=_SPEED, ylabel=r"positioning angle $\theta_q$ [°]", xlim=(speed[0], speed[-1]))
+    # Room for names above the topmost line, and above the bars.
+    apart = (angle[-1] - angle[0]) / 16
+    ax.set_ylim(angle[0] - apart, angle[-1] + 1.5 * apart)
     ax.legend(loc="upper center")
     ax.grid(False)
-    _draw_names(ax, chart, (angle[-1] - angle[0]) / 24)
+    _draw_names(ax, chart, apart)
     _draw_zones(ax, zones)
     _colour_bar(figure, [ax], largest)
     return figure

@@ -87,9 +87,9 @@ def undercut_condition(condition: xr.Dataset) -> Figure:
     *others, physical = condition["roots"].values
     for root in others:
         axes.plot(root, 0, "o", color=GREY, markersize=8, markerfacecolor="white", zorder=5)
-        label_line(axes, f"$t$ = {root:.4f}\non the far branch", (root, 0), (-38, -70))
+        label_line(axes, f"$t = {root:.4f}$\non the far branch", (root, 0), (-62, -78))
     axes.plot(physical, 0, "o", color=VERMILION, markersize=8, zorder=5)
-    label_line(axes, f"$t$ = {physical:.4f}\nphysical", (physical, 0), (-46, -96))
+    label_line(axes, f"$t = {physical:.4f}$\nphysical", (physical, 0), (-6, -78))
     axes.set(xlabel=r"$t = \tan(\phi_s + \theta_{0s} + \theta_s^*)$", ylabel="condition (left $-$ right)")
     return figure
 

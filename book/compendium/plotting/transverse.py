@@ -17,6 +17,7 @@ from facegear.plotting.style import (
     INK,
     ORANGE,
     VERMILION,
+    darkest,
     draw_border,
     draw_unstable,
     growth_bar,
@@ -193,7 +194,7 @@ def wide_maps(
 
 @styled
 def compared_maps(charts: Mapping[str, xr.Dataset], columns: int = 2) -> Figure:
-    """Draw maps side by side on one scale of colours.
+    """Draw maps side by side on one scale of colours, which ends before a narrow strip of strong growth.
 
     Parameters
     ----------
@@ -204,13 +205,13 @@ def compared_maps(charts: Mapping[str, xr.Dataset], columns: int = 2) -> Figure:
     """
     rows = -(-len(charts) // columns)
     figure, axes = panels(rows, columns, 2.9 * rows + 0.5, sharex=True)
-    largest = _largest(list(charts.values()))
+    end = darkest(np.concatenate([chart["growth_rate"].values.ravel() for chart in charts.values()]))
     for place, (ax, (title, chart)) in enumerate(zip(axes, charts.items(), strict=True)):
-        mesh = _draw_map(ax, chart, largest)
+        mesh = _draw_map(ax, chart, end)
         ax.set_title(title, loc="left", fontsize=10)
         if place // columns == rows - 1:
             ax.set_xlabel(_SPEED)
-    growth_bar(figure, axes, mesh)
+    growth_bar(figure, axes, mesh, beyond=_largest(list(charts.values())) > end)
     return figure
 
 

@@ -9,7 +9,7 @@ from facegear.drives.studies.study import Choice, Quantity, Settings
 from facegear.geometry.drive import Drive
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce, Following
-from facegear.support.parameters import WATT_PER_HORSEPOWER, rad_per_s
+from facegear.support.parameters import rad_per_s
 
 FOLLOWER, DEAD = "follows the rim", "keeps its direction"
 RIM_ONLY = "one point of the rim"
@@ -35,16 +35,16 @@ def force_controls(
     if place is None:
         raise ValueError(f"force of the model must press on {' or '.join(places)}, got {here.spread!r}")
     # The power control holds at the highest speed: the same force.
-    horsepower = here.power / here.pinion_speed * at_top / WATT_PER_HORSEPOWER
+    kilowatts = here.power / here.pinion_speed * at_top / 1e3
     return (
         Quantity(
             "power",
-            "power of a pinion at top speed [hp]",
+            "power of a pinion at top speed [kW]",
             0.0,
-            1500.0,
-            horsepower,
+            1200.0,
+            kilowatts,
             10.0,
-            unit=WATT_PER_HORSEPOWER,
+            unit=1e3,
             parameter="power",
         ),
         Choice("force_at", "driving force on", tuple(PRESSED), place),
