@@ -22,7 +22,7 @@ from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.support.types import ComplexArray, FloatArray
 
 # Largest angle [rad] by which the fastest live motion turns from one sample to the next.
-SAMPLE_ANGLE = 0.3
+SAMPLE_ANGLE = 0.4
 FEWEST_SAMPLES = 64
 # A pair is followed if so many times its foretold coupling could make it unstable.
 _SAFETY = 4.0
@@ -31,6 +31,8 @@ _TELLING = 0.1
 # Reach of the expansion around a sample, in steps: neighbours overlap.
 _REACH = 1.0
 _ROUNDS = 8
+# Parts of the reach at which growth is foretold of a pair that meets beyond it or not at all.
+_PLACES = np.array([0.25, 0.5, 0.75, 1.0])
 # Between unstable samples the growth may differ from a straight line by this part of itself.
 _STRAIGHT = 0.25
 _MOST_HALVINGS = 40
@@ -159,7 +161,8 @@ def _foretold(
     In the eigenvectors of a sample ln(Φ + δ Φ') is diag(p) + δ G to first order. The block of a pair has the
     exponents (p_i + p_j + δ (G_ii + G_jj))/2 ± √D with D = (p_i − p_j + δ (G_ii − G_jj))²/4 + δ² G_ij G_ji. D is
     smooth where the exponents themselves have a root, at a border, and largest in the middle of a tongue: where two
-    phases would meet without the coupling.
+    phases would meet without the coupling. Where that is beyond the reach, or nowhere because the coupling turns the
+    phases as much as they part, a stable sample foretells the places within its reach that are unstable already.
     """
     inside = (1.0 / centres >= curve.lowest_speed) & (1.0 / centres <= curve.highest_speed)
     centres, reach = centres[inside], reach[inside]
@@ -186,24 +189,28 @@ def _foretold(
             reach,
         ),
     )
-    sample, step, apart, turning, coupling, mean = (np.concatenate(part) for part in zip(*both, strict=True))
+    sample, step, apart, turning, coupling, mean, beyond = (
+        np.concatenate(part) for part in zip(*both, strict=True)
+    )
     difference = (apart + step * turning) / 2.0
     spread = difference.real**2 + _SAFETY**2 * np.abs(coupling) * step**2
-    foretold = np.abs((difference**2 + coupling * step**2).real)
+    foretold = (difference**2 + np.where(beyond, _SAFETY**2, 1.0) * coupling * step**2).real
     # The growth of the pair without the coupling: where that alone is unstable, and the coupling can change it by a
     # small part only, the meeting tells nothing new.
     apart_only = np.abs(difference.real)
-    added = np.sqrt(np.maximum(spread, foretold)) - apart_only
+    root = np.where(beyond, np.maximum(foretold, 0.0), np.maximum(spread, np.abs(foretold)))
+    added = np.sqrt(root) - apart_only
     excess = mean + apart_only - threshold
     matters = (excess + added > 0.0) & (added > _TELLING * excess)
-    return centres[sample[matters]] + step[matters], np.abs(step[matters]), samples
+    distance = np.where(beyond, _PLACES[0] * 2.0 * reach[sample], np.abs(step))
+    return centres[sample[matters]] + step[matters], distance[matters], samples
 
 
 class _Near(NamedTuple):
-    """Pairs of multipliers whose phases are foretold to meet within reach: of each, one entry.
+    """Pairs of multipliers whose phases are foretold to meet within reach, or that may grow there: of each, one entry.
 
-    Number of the sample, step to the meeting, p_i − p_j and its slope, G_ij G_ji, and (p_i + p_j)/2 at the meeting, of
-    which only the growth.
+    Number of the sample, step to the meeting, p_i − p_j and its slope, G_ij G_ji, (p_i + p_j)/2 at the meeting, of
+    which only the growth, and whether the step is not to a meeting but to a place before it.
     """
 
     sample: NDArray[np.intp]
@@ -212,6 +219,7 @@ class _Near(NamedTuple):
     turning: ComplexArray
     coupling: ComplexArray
     mean: FloatArray
+    beyond: NDArray[np.bool_]
 
 
 def _near(
@@ -227,19 +235,32 @@ def _near(
     p, q = np.log(a), np.log(b)
     apart = p - q
     apart.imag -= 2.0 * np.pi * np.round(apart.imag / (2.0 * np.pi))
-    turning, difference = first - second, a - b
+    turning, distance = first - second, a - b
     # Off the diagonal the logarithm has the divided difference of its values.
-    close = np.abs(difference) <= 1e-6 * np.abs(a)
-    scale = np.where(close, 1.0 / a, apart / np.where(difference == 0.0, 1.0, difference))
+    close = np.abs(distance) <= 1e-6 * np.abs(a)
+    scale = np.where(close, 1.0 / a, apart / np.where(distance == 0.0, 1.0, distance))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         coupling = products * scale**2
         bend = (turning**2 / 4.0 + coupling).real
         step = -(apart * turning).real / (4.0 * bend)
+        level, drift = (p.real + q.real) / 2.0, (first + second).real / 2.0
+        within = reach[:, np.newaxis, np.newaxis]
         # Decayed motions do not come back.
-        near = pairs & (p.real + q.real > np.log(_DECAYED)) & (bend < 0.0)
-        near &= np.abs(step) <= reach[:, np.newaxis, np.newaxis]
-        mean = (p.real + q.real) / 2.0 + step * (first + second).real / 2.0
-    return _Near(np.nonzero(near)[0], step[near], apart[near], turning[near], coupling[near], mean[near])
+        live = pairs & (2.0 * level > np.log(_DECAYED))
+        near = live & (bend < 0.0) & (np.abs(step) <= within)
+        most = np.abs(apart.real) / 2.0 + within * (np.abs(drift) + _SAFETY * np.sqrt(np.abs(coupling)))
+        stable = (np.abs(one[0]).max(axis=1) < 1.0)[:, np.newaxis, np.newaxis]
+        far = live & ~near & stable & (level + most > 0.0)
+    places = np.concatenate([-_PLACES, _PLACES])
+    sample = np.append(np.nonzero(near)[0], np.repeat(np.nonzero(far)[0], places.size))
+    chosen = (
+        np.append(part[near], np.repeat(part[far], places.size))
+        for part in (apart, turning, coupling, level, drift)
+    )
+    difference, slope, products, mean, change_of_mean = chosen
+    steps = np.append(step[near], np.outer(reach[np.nonzero(far)[0]], places))
+    beyond = np.arange(steps.size) >= np.count_nonzero(near)
+    return _Near(sample, steps, difference, slope, products, mean + steps * change_of_mean, beyond)
 
 
 def _rising(curve: MultiplierCurve, scan: Scan, threshold: float) -> Scan:

@@ -24,6 +24,7 @@ from facegear.mechanics.mesh_oscillator import MeshOscillator
 from facegear.mechanics.plate import Body
 from facegear.mechanics.properties import MeshLoad
 from facegear.mechanics.sharing import shared_load
+from facegear.mechanics.torsional import Gearbox, Torsional
 from facegear.mechanics.transverse import Transverse
 from facegear.support.parameters import rad_per_s, rpm
 from tests.comparing import agree
@@ -504,4 +505,31 @@ def test_a_tongue_next_to_another_one_is_found_wherever_samples_lie(lowest_rpm):
     assert rpm([tongue.lower, tongue.upper]) == pytest.approx([524.34, 525.58], abs=0.02)
     # The spectral radius itself, by another method and without any scan.
     for speed, unstable in ((524.0, False), (525.0, True), (526.2, False), (529.0, True)):
+        assert (growth_rate(model.system(float(rad_per_s(speed)))) > 0.0) == unstable
+
+
+@pytest.mark.parametrize("lowest_rpm", [148.7290615, 176.0568871, 183.7927330])
+def test_a_tongue_that_a_dying_pair_makes_by_itself_is_found_beside_a_wide_one(lowest_rpm):
+    """(2+2)/7 of this gearbox, 0.23 rpm wide: its phases turn back before they meet, and it was missed."""
+    gearbox = Gearbox(
+        Drive(26, 65, 3.077e-3),
+        pinion_inertia=3.712e-3,
+        gear_inertia=0.1229,
+        load_inertia=3.4369,
+        mesh_stiffness=2.309562301e8,
+        mesh_damping=125.29375483,
+        input_stiffness=8728.1,
+        input_damping=4.73499425e-3,
+        output_stiffness=3.6739173e6,
+        output_damping=1.99310013525,
+    )
+    model = Torsional(gearbox, arm="conjugate")
+    found = tongues(model, rad_per_s([lowest_rpm, 290.0]), threshold=1e-7, progress=False)
+    borders_rpm = [(rpm(t.lower), rpm(t.upper)) for t in found if 212.0 < rpm(t.peak) < 215.7]
+    assert borders_rpm == [
+        pytest.approx((213.33, 213.56), abs=0.02),
+        pytest.approx((213.69, 215.75), abs=0.02),
+    ]
+    # The spectral radius itself, without any scan.
+    for speed, unstable in ((213.2, False), (213.45, True), (213.62, False), (214.0, True)):
         assert (growth_rate(model.system(float(rad_per_s(speed)))) > 0.0) == unstable
