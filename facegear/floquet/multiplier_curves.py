@@ -84,6 +84,11 @@ class FrozenMotions:
         fastest = np.where(dead > middle[:, None], np.abs(self.exponents.imag), 0.0).max(axis=1)
         return slowness, np.append(0.0, np.cumsum(fastest * np.diff(slowness)))
 
+    @property
+    def all_live(self) -> bool:
+        """Whether no motion dies within the shortest period."""
+        return bool((-self.exponents.real * self.low < _DEAD / 2.0).all())
+
     def points(self, step: float, fewest: int) -> FloatArray:
         """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range."""
         slowness, angle = self.live_angle
@@ -222,9 +227,12 @@ class MultiplierCurve:
         """Give the multipliers that do not vanish by smaller matrices, QᵀΦQ, where Q spans all columns of Φ.
 
         What has died within a period leaves no column in Φ, so that Φ = QQᵀΦ, and such matrices have the same
-        eigenvalues but for zeros. Q is one for all speeds. What it leaves out is smaller than the error of the series
-        at every speed, not at its nodes only, because no Chebyshev polynomial exceeds 1.
+        eigenvalues but for zeros; where nothing dies in the shortest period, Q is square. Q is one for all speeds. What
+        it leaves out is smaller than the error of the series at every speed, not at its nodes only, because no
+        Chebyshev polynomial exceeds 1.
         """
+        if self.motions.all_live:
+            return self
         terms = np.concatenate([window.coefficients for window in self.windows])
         columns = np.moveaxis(terms, 0, 1).reshape(terms.shape[1], -1)
         basis, sizes, _ = np.linalg.svd(np.linalg.qr(columns.T).R.T)

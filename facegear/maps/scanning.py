@@ -66,6 +66,16 @@ class Scan:
         parts = [_looked_at(curve, speeds[i : i + curve.batch]) for i in range(0, speeds.size, curve.batch)]
         return cls(speeds, *np.concatenate(parts, axis=1)) if parts else cls(speeds, speeds, speeds)
 
+    def between(self, start: int, stop: int) -> Scan:
+        """Return the samples with some numbers, the last of them `stop` − 1."""
+        return Scan(self.speeds[start:stop], self.radii[start:stop], self.slopes[start:stop])
+
+    def apart(self, part: float) -> Scan:
+        """Leave out samples that are closer to the one before them than a part of their speed, but the largest."""
+        close = np.append(False, np.diff(self.speeds) <= part * self.speeds[1:])
+        close[np.argmax(self.radii)] = False
+        return Scan(self.speeds[~close], self.radii[~close], self.slopes[~close])
+
     def with_speeds(self, curve: MultiplierCurve, speeds: Sequence[float] | FloatArray) -> Scan:
         """Return the scan with more speeds; those already there are left out."""
         added = np.unique(np.asarray(speeds, dtype=float))

@@ -333,28 +333,47 @@ def _runs(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[tuple[fl
     for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
         lower = border(start - 1, start) if start > 0 else curve.lowest_speed
         upper = border(stop - 1, stop) if stop <= last else curve.highest_speed
-        growth = np.log(scan.radii[start:stop]) * scan.speeds[start:stop]
-        top = start + int(np.argmax(growth))
-        # Samples that all but coincide, apart by rounding, do not bracket a maximum.
-        apart = _APART * scan.speeds[top]
-        before = int(np.searchsorted(scan.speeds, scan.speeds[top] - apart)) - 1
-        after = int(np.searchsorted(scan.speeds, scan.speeds[top] + apart, side="right"))
-        low = max(lower, float(scan.speeds[max(before, 0)]))
-        high = min(upper, float(scan.speeds[min(after, last)]))
-        runs.append((lower, upper, _peak(curve, low, high, float(scan.speeds[top]))))
+        runs.append((lower, upper, _peak(curve, scan.between(start, stop), lower, upper)))
     return runs
 
 
-def _peak(curve: MultiplierCurve, low: float, high: float, best: float) -> float:
-    """Speed of the largest growth rate between two speeds, no worse than at `best`."""
+def _peak(curve: MultiplierCurve, inside: Scan, lower: float, upper: float) -> float:
+    """Speed of the largest growth rate of a tongue, of whose samples the tangents say where it may be."""
 
     def growth(speed: float) -> float:
         return float(np.log(curve.spectral_radii(np.array([speed]))[0])) * speed
 
-    if low >= high:
-        return best
-    speed, value = largest_between(growth, low, high, 1e-9 * high)
-    return speed if value >= growth(best) else best
+    # Samples that all but coincide, apart by rounding, do not bracket a maximum.
+    inside = inside.apart(_APART)
+    rates = np.log(inside.radii) * inside.speeds
+    best, largest = float(inside.speeds[rates.argmax()]), float(rates.max())
+    ends = np.concatenate([[lower], inside.speeds, [upper]])
+    bounds = _bounds(inside, ends)
+    for place in np.argsort(-bounds, kind="stable").tolist():
+        low, high = ends[place : place + 2].tolist()
+        if bounds[place] <= largest or low >= high:
+            continue
+        speed, value = largest_between(growth, low, high, 1e-9 * high)
+        if value > largest:
+            best, largest = speed, value
+    return best
+
+
+def _bounds(inside: Scan, ends: FloatArray) -> FloatArray:
+    """Largest growth rate, of a period of 1 rad, that tangents at samples allow between them and the ends."""
+    level, step = np.log(inside.radii), np.diff(1.0 / ends)
+    # From a sample towards the next one and the one before.
+    ahead, back = inside.slopes * step[1:], -inside.slopes * step[:-1]
+    beyond = [level[0] + max(back[0], 0.0)], [level[-1] + max(ahead[-1], 0.0)]
+    left, right, rise, fall = level[:-1], level[1:], ahead[:-1], back[1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meeting = left + rise * (right + fall - left) / (rise + fall)
+    # Where it rises all the way, or falls, one end is the largest.
+    between = np.where(
+        fall <= 0.0, right, np.where(rise <= 0.0, left, np.fmax(meeting, np.maximum(left, right)))
+    )
+    bounds = np.concatenate([beyond[0], between, beyond[1]])
+    return np.asarray(np.nan_to_num(bounds, nan=np.inf) * ends[1:], dtype=float)
 
 
 def _tongue(model: Model, method: Method, lower: float, upper: float, peak: float) -> Tongue:

@@ -438,6 +438,9 @@ class Growing:
     def transition_matrices(self, speeds):
         return np.stack([np.diag([1.0 + growth(v) for growth in self.growths]) for v in speeds])
 
+    def spectral_radii(self, speeds):
+        return np.abs(self.transition_matrices(speeds)).max(axis=(1, 2))
+
     def slopes(self, speeds):
         return np.stack([np.diag([-(v**2) * growth.deriv()(v) for growth in self.growths]) for v in speeds])
 
@@ -467,6 +470,16 @@ def test_a_hump_and_a_valley_beside_a_tongue_are_seen(first):
     assert runs_of(scan) == 1
     scan = scanning._rising(curve, scan, 1e-8)
     assert runs_of(scan.with_speeds(curve, scanning._gaps(curve, scan, 1e-8))) == 2
+
+
+def test_of_two_maxima_in_a_tongue_the_larger_is_the_peak_whichever_a_sample_is_near():
+    """Growth 0.1 − (v − 1.5)² (v − 2.5)²/2 in a period: the rate is larger near 2.5, and only 1.5 is a sample."""
+    hump = np.polynomial.Polynomial.fromroots([1.5, 1.5, 2.5, 2.5])
+    curve = Growing((0.1 - 0.5 * hump).coef)
+    scan = Scan.of(curve, np.array([1.0, 1.5, 2.0, 3.0]))
+    ((_, _, peak),) = tracing._runs(curve, scan, 1e-8)
+    speeds = np.linspace(2.4, 2.8, 400001)
+    assert peak == pytest.approx(speeds[(np.log1p(0.1 - 0.5 * hump(speeds)) * speeds).argmax()], abs=2e-6)
 
 
 def test_where_nothing_can_rise_far_enough_nothing_is_added():
