@@ -63,8 +63,13 @@ class Scan:
     @classmethod
     def of(cls, curve: MultiplierCurve, speeds: FloatArray) -> Scan:
         """Look at ascending speeds within the range of a curve."""
-        parts = [_looked_at(curve, speeds[i : i + curve.batch]) for i in range(0, speeds.size, curve.batch)]
-        return cls(speeds, *np.concatenate(parts, axis=1)) if parts else cls(speeds, speeds, speeds)
+        return cls.of_motions(_critical(curve, speeds))
+
+    @classmethod
+    def of_motions(cls, motions: Sequence[_Critical]) -> Scan:
+        """Return the samples that critical motions are."""
+        columns = zip(*((motion.speed, motion.radius, motion.slope) for motion in motions), strict=True)
+        return cls(*(np.array(column) for column in columns)) if motions else cls(*np.zeros((3, 0)))
 
     def between(self, start: int, stop: int) -> Scan:
         """Return the samples with some numbers, the last of them `stop` − 1."""
@@ -93,14 +98,6 @@ class Scan:
         return Scan(speeds, radii, slopes)
 
 
-def _looked_at(curve: MultiplierCurve, speeds: FloatArray) -> FloatArray:
-    """Spectral radii and slopes of their logarithm by slowness at speeds (m,), shape (2, m)."""
-    values, right, left = critical(curve.transition_matrices(speeds))
-    change_of_value = np.einsum("vi,vij,vj->v", left, curve.slopes(speeds), right, optimize=True)
-    with np.errstate(all="ignore"):
-        return np.stack([np.abs(values), (change_of_value / values).real])
-
-
 def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) -> Scan:
     """Spectral radii on a grid, at all meetings of multipliers that matter, and wherever growth may pass between."""
     low, high = 1.0 / curve.highest_speed, 1.0 / curve.lowest_speed
@@ -109,7 +106,7 @@ def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) ->
     meetings, looked_at = _meetings(curve, seeds, _steps(grid, seeds), threshold)
     scan = Scan.of(curve, np.array([curve.lowest_speed, curve.highest_speed])).with_samples(looked_at)
     scan = _rising(curve, scan.with_speeds(curve, 1.0 / meetings), threshold)
-    return scan.with_speeds(curve, _gaps(curve, scan, threshold))
+    return scan.with_samples(_gaps(curve, scan, threshold))
 
 
 def _steps(grid: FloatArray, points: FloatArray) -> FloatArray:
@@ -299,10 +296,11 @@ def _may_pass(here: FloatArray, foretold: FloatArray, there: FloatArray) -> NDAr
 
 
 class _Critical(NamedTuple):
-    """Largest multiplier at a speed: growth in a period above the threshold, and its eigenvectors, left r = 1."""
+    """Largest multiplier at a speed: its modulus, the slope of that as in a scan, and its eigenvectors, left r = 1."""
 
     speed: float
-    growth: float
+    radius: float
+    slope: float
     left: ComplexArray
     right: ComplexArray
 
@@ -311,44 +309,42 @@ class _Critical(NamedTuple):
         return bool(np.abs((self.left @ other.right) * (other.left @ self.right)) > 0.5)
 
 
-def _critical(curve: MultiplierCurve, speeds: FloatArray, threshold: float) -> list[_Critical]:
+def _critical(curve: MultiplierCurve, speeds: FloatArray) -> list[_Critical]:
     """Critical motions at speeds (m,)."""
     found = []
     for start in range(0, speeds.size, curve.batch):
         part = speeds[start : start + curve.batch]
         values, right, left = critical(curve.transition_matrices(part))
-        growth = np.abs(values) - 1.0 - threshold
-        found += list(map(_Critical, part.tolist(), growth.tolist(), left, right))
+        change_of_value = np.einsum("vi,vij,vj->v", left, curve.slopes(part), right, optimize=True)
+        with np.errstate(all="ignore"):
+            slopes = (change_of_value / values).real
+        found += list(map(_Critical, part.tolist(), np.abs(values).tolist(), slopes.tolist(), left, right))
     return found
 
 
-def _gaps(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[float]:
-    """Speeds between unstable samples that separate tongues which lie close together.
+def _gaps(curve: MultiplierCurve, scan: Scan, threshold: float) -> Scan:
+    """Look between unstable samples for speeds that separate tongues which lie close together.
 
     Intervals between unstable samples are halved where the critical motion is not the same at both ends, or the
     growth is not near a straight line, until a stable speed is found or nothing is left to see.
     """
     unstable = scan.radii - 1.0 > threshold
     samples = dict(
-        zip(
-            np.flatnonzero(unstable).tolist(),
-            _critical(curve, scan.speeds[unstable], threshold),
-            strict=True,
-        )
+        zip(np.flatnonzero(unstable).tolist(), _critical(curve, scan.speeds[unstable]), strict=True)
     )
     intervals = [(samples[i], samples[i + 1]) for i in samples if i + 1 in samples]
-    found: list[float] = []
+    found: list[_Critical] = []
     for _ in range(_MOST_HALVINGS):
         intervals = [(a, b) for a, b in intervals if b.speed - a.speed > SPEED_TOLERANCE * b.speed]
         if not intervals:
             break
         middles = np.array([(a.speed + b.speed) / 2.0 for a, b in intervals])
         halves = []
-        for (a, b), middle in zip(intervals, _critical(curve, middles, threshold), strict=True):
-            found.append(middle.speed)
-            if middle.growth > 0.0:
-                least = min(a.growth, b.growth, middle.growth)
-                curved = abs(middle.growth - (a.growth + b.growth) / 2.0) > _STRAIGHT * least
+        for (a, b), middle in zip(intervals, _critical(curve, middles), strict=True):
+            found.append(middle)
+            left, between, right = (each.radius - 1.0 - threshold for each in (a, middle, b))
+            if between > 0.0:
+                curved = abs(between - (left + right) / 2.0) > _STRAIGHT * min(left, between, right)
                 halves += [(c, d) for c, d in ((a, middle), (middle, b)) if curved or not c.continues(d)]
         intervals = halves
-    return found
+    return Scan.of_motions(found)

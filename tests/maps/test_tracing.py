@@ -469,7 +469,7 @@ def test_a_hump_and_a_valley_beside_a_tongue_are_seen(first):
     scan = Scan.of(curve, np.array([1.0, first, 2.4, 3.0]))
     assert runs_of(scan) == 1
     scan = scanning._rising(curve, scan, 1e-8)
-    assert runs_of(scan.with_speeds(curve, scanning._gaps(curve, scan, 1e-8))) == 2
+    assert runs_of(scan.with_samples(scanning._gaps(curve, scan, 1e-8))) == 2
 
 
 def test_of_two_maxima_in_a_tongue_the_larger_is_the_peak_whichever_a_sample_is_near():
