@@ -23,7 +23,8 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.rigid_motion import rigid_motions
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
-from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
+from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, scan_of
+from facegear.maps.scans import SPEED_TOLERANCE, Scan
 from facegear.support.parameters import ascending, finite_array, number_of_workers, within
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
