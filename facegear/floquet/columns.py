@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from facegear.floquet.collocation import FreeMotion
 from facegear.floquet.contact_forces import mobilities
 from facegear.floquet.eigenvalues import spectral_radii
+from facegear.floquet.free_systems import FreeSystems
 from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.methods import Collocation, Method, with_method
 from facegear.floquet.multipliers import transition_matrices
@@ -180,9 +181,8 @@ class LoadSweep:
         inverse = np.linalg.inv(scale)
         if isinstance(method, Collocation):
             # What does not depend on the loads is prepared once.
-            motion = FreeMotion(
-                [system], self.column, method.nodes, method.panel_angle, fewest_held=method.fewest_held
-            )
+            free = FreeSystems.of([system], self.column, method.fewest_held)
+            motion = FreeMotion(free, method.nodes, method.panel_angle)
             to, back = scale @ motion.modes.state_from_real()[0], motion.modes.real_from_state()[0] @ inverse
             return lambda t: to @ motion.transition_matrices(self.at(t)) @ back
 

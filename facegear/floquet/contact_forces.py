@@ -276,7 +276,8 @@ def _at_instants(
         functions = functions[:1]
     if not functions[0]:
         return np.empty((1, *shape, 0, systems[0].size))
-    return np.stack([np.stack([values(function) for function in row], axis=-2) for row in functions])
+    found = {function: values(function) for function in {own for row in functions for own in row}}
+    return np.stack([np.stack([found[function] for function in row], axis=-2) for row in functions])
 
 
 @lru_cache(maxsize=64)
@@ -289,5 +290,8 @@ def mobilities(systems: Sequence[PeriodicSystem]) -> FloatArray:
     """Return the largest φᵀM⁻¹φ of each load, at sampled instants, shape (V, p)."""
     shapes = _at_instants(systems, lambda load: load.shape, _sampled, (_INSTANTS,))
     mass = np.stack([system.mass for system in systems])[:, None]
+    if (mass == mass[0]).all():
+        mass = mass[:1]
     moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
-    return np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
+    found = np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
+    return np.broadcast_to(found, (len(systems), found.shape[1]))

@@ -19,6 +19,7 @@ import numpy as np
 
 from facegear.floquet import collocation
 from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.free_systems import FreeSystems
 from facegear.floquet.gauss_panels import within_reach
 from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.motion import MotionPanels
@@ -267,8 +268,8 @@ class Collocation:
         Panels are half as long: along them forces are known with the root of the accuracy of the ends only.
         """
         column = LoadColumn.of(system)
-        angle = self.panel_angle / 2.0
-        motion = collocation.FreeMotion([system], column, self.nodes, angle, instants, self.fewest_held)
+        free = FreeSystems.of([system], column, self.fewest_held)
+        motion = collocation.FreeMotion(free, self.nodes, self.panel_angle / 2.0, instants)
         return motion.motion_panels(column)
 
     def refined(self) -> Method:
