@@ -84,13 +84,14 @@ class FreeMotion:
         )
         # Of the free motion only what the loads ask for: its accelerations where they have mass, and so on.
         self._orders = 3 if column.mass.any() else 2 if column.damping.any() else 1
+        self._own = self._load_parameters(column) if len(self.systems) > 1 else None
         self.panels = self._build(nodes, self.edges[:-1], np.diff(self.edges))
         known = column.extremes() if len(self.systems) == 1 else column
         self._known = (known, self._halve_unresolved_panels(known, nodes))
         self.kicks = [self._kick_data(system) if self._orders == 3 else [] for system in self.systems]
 
     def _build(self, nodes: int, start: FloatArray, length: FloatArray) -> ForcePanels:
-        return ForcePanels.of(self._held.systems, self.modes, nodes, start, length, self._orders)
+        return ForcePanels.of(self._held.systems, self.modes, nodes, start, length, self._orders, self._own)
 
     def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> FloatArray:
         """Halve panels until the contact forces of all initial states are resolved at the given values.
@@ -101,7 +102,7 @@ class FreeMotion:
         coefficients of the force are ε of its size, ε² is left of its effect.
         """
         tail = legendre_from_values(nodes)[-2:]
-        parameters = self._load_parameters(column)
+        parameters = None if self._own is not None else self._load_parameters(column)
         force = self.panels.forces(parameters)
         for _ in range(_MOST_HALVINGS):
             shape = (*force.shape[:2], nodes, -1, force.shape[-1])
@@ -158,6 +159,8 @@ class FreeMotion:
         known, forces = self._known
         if np.array_equal(known.stacked(), column.stacked()):
             return forces
+        if self._own is not None:
+            raise ValueError("column must be that of the systems, which have one value each")
         return self.panels.forces(self._load_parameters(column))
 
     def _load_parameters(self, column: LoadColumn) -> FloatArray:

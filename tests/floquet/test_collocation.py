@@ -334,3 +334,23 @@ def test_some_of_many_systems_keep_their_modes_loads_and_angles(shapes):
     )
     np.testing.assert_allclose(some.column.stacked()[1:], LoadColumn.of(systems[0]).stacked(), rtol=1e-14)
     assert list(some.systems) == [systems[2], systems[0]]
+
+
+@pytest.mark.parametrize("rate", ["frozen", "total"])
+def test_systems_with_values_of_their_own_are_those_of_a_column(shapes, rate):
+    """Many systems put their parameters into the equations, one system keeps them out: the same matrices."""
+    one = synthetic_disk(400.0 * RPM, shapes)
+    loads = tuple(replace(load, rate=rate) for load in one.loads)
+    part = np.array([[0.2], [0.7], [1.0]]) * np.array([1.0, 0.8, 0.5])
+    column = LoadColumn(CONTACT_MASS * part, CONTACT_DAMPING * part, CONTACT_STIFFNESS * part)
+    each = zip(*column.parts, strict=True)
+    one = replace(one, loads=loads)
+    systems = [one.replace_loads(mass=m, damping=c, stiffness=k) for m, c, k in each]
+    motion = FreeMotion(FreeSystems.of([one], column))
+    modes = motion.modes
+    expected = modes.state_from_real() @ motion.transition_matrices(column) @ modes.real_from_state()
+    found = transition_matrices(systems)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+    many = FreeMotion(FreeSystems.of(systems, column))
+    with pytest.raises(ValueError, match="column must be that of the systems"):
+        many.transition_matrices(LoadColumn(column.mass, column.damping, 2.0 * column.stiffness))
