@@ -111,6 +111,14 @@ class DriveFile:
         """What of the shafts cannot be built, one sentence each; empty without lengths of shafts."""
         return () if self.torsional is None else self.torsional.not_buildable
 
+    @property
+    def yields(self) -> str:
+        """How far the stress at the root of the pinion's tooth is above what is allowed; empty if it is not."""
+        stress, allowed = (
+            1e-6 * value for value in self.requirements.root_stresses(self.transverse.gear.body)
+        )
+        return f"largest stress {stress:.4g} MPa, allowable {allowed:.4g} MPa" if stress > allowed else ""
+
 
 def read_drive_file(path: str | Path) -> DriveFile:
     """Read and check a drive file.
@@ -185,10 +193,10 @@ def parse_drive(content: bytes | str, source: str = "drive file") -> DriveFile:
         found = checked_values(written)
         try:
             return replace(_drive_file(found), content=written)
+        except _BoreInTeethError:
+            raise
         except ValueError as error:
-            raise ValueError(
-                f"{error}{'' if isinstance(error, _BoreInTeethError) else _guess(found)}"
-            ) from None
+            raise ValueError(f"{error}{_guess(found)}") from None
     except (TypeError, ValueError) as error:
         raise DriveFileError(f"{source}: {error}") from None
 
@@ -296,17 +304,17 @@ def _guess(found: FileValues) -> str:
     in_mm = found.key("gears", "module") == "gears.module_mm"
     # Pitches are whole numbers: a module that is none was not meant as one.
     could_be_other = not in_mm or math.isclose(1e3 * gears["module"], round(1e3 * gears["module"]))
-    guesses = (
+    guesses = [
         ("gears.pinion_teeth and gears.gear_teeth swapped?", found.replaced("gears", **teeth)),
         (
             "operation.lowest_speed_rpm and operation.highest_speed_rpm swapped?",
             found.replaced("operation", **speeds),
         ),
-    )
+    ]
     if could_be_other:
         other = "a diametral pitch per inch" if in_mm else "a module in mm"
         shown = f"is {found.shown('gears', 'module')} {other}?"
-        guesses = (*guesses, (shown, found.replaced("gears", module=module)))
+        guesses.append((shown, found.replaced("gears", module=module)))
     for words, changed in guesses:
         try:
             _drive_file(changed)
