@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import argparse
+import math
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from facegear import __version__
 from facegear.drives.commands import assess_drive, check, examples, explore, new, report, stability_map
 from facegear.drives.contacts import NAMES
 from facegear.drives.drive_keys import NAME, SECTIONS
 from facegear.drives.examples import example_names
-from facegear.drives.keys import Key, plain
+from facegear.drives.keys import MOST_CELLS, Key, plain
 
+T = TypeVar("T")
+
+# More than any machine has processors: each takes a hundred megabytes.
+_MOST_PROCESSES = 1024
 _CODES = "exit codes: 0 done, 1 a file cannot be used, 2 the command cannot be understood, 130 interrupted"
 
 
@@ -74,15 +81,17 @@ def _add_report(commands: Any) -> None:
     )
     _add_file_and_output(command, "results")
     command.add_argument(
-        "--cells", type=_whole, default=60, help="speeds and values of the maps (%(default)s)"
+        "--cells", type=_whole(1, MOST_CELLS), default=60, help="speeds and values of the maps (%(default)s)"
     )
     command.add_argument(
         "--tolerance",
-        type=_part,
+        type=_given(float, "a number from 1e-6 to 0.5", lambda number: 1e-6 <= number <= 0.5),
         default=0.02,
         help="part of the speeds that may still move from one basis to the next (%(default)s)",
     )
-    command.add_argument("--most-steps", type=_whole, default=5, help="bases that are tried (%(default)s)")
+    command.add_argument(
+        "--most-steps", type=_whole(1, 100), default=5, help="bases that are tried (%(default)s)"
+    )
     _add_jobs(command)
 
 
@@ -137,17 +146,20 @@ the driving force; `facegear report` raises the basis and takes all of them.""",
         default="stiffness",
         help="key of the drive file that is swept (%(default)s)",
     )
+    number = _given(float, "a finite number", math.isfinite)
     unit = "in the unit of the key; %s times the file's own if left out"
-    command.add_argument("--from", dest="lowest", metavar="VALUE", type=float, help=unit % "half")
-    command.add_argument("--to", dest="highest", metavar="VALUE", type=float, help=unit % "one and a half")
+    command.add_argument("--from", dest="lowest", metavar="VALUE", type=number, help=unit % "half")
+    command.add_argument("--to", dest="highest", metavar="VALUE", type=number, help=unit % "one and a half")
     command.add_argument(
         "--speeds",
         nargs=2,
         metavar=("LOW", "HIGH"),
-        type=float,
+        type=number,
         help="of the face gear [rpm]; those of the file if left out",
     )
-    command.add_argument("--cells", type=_whole, default=60, help="values and speeds (%(default)s)")
+    command.add_argument(
+        "--cells", type=_whole(2, MOST_CELLS), default=60, help="values and speeds (%(default)s)"
+    )
     command.add_argument("--contact", choices=tuple(NAMES), default="", help="that of the file if left out")
     command.add_argument(
         "--force",
@@ -159,7 +171,7 @@ the driving force; `facegear report` raises the basis and takes all of them.""",
         "--output",
         nargs="+",
         metavar="FILE",
-        type=Path,
+        type=_place,
         help="netCDF (.nc), table (.csv), picture (.svg, .png, .pdf); FILE_map.nc, .csv and .svg beside the drive file "
         "if left out",
     )
@@ -182,7 +194,7 @@ It runs on this machine (Voilà) until it is interrupted, and needs `pip install
     command.add_argument(
         "file", metavar="FILE", nargs="?", help="drive file where the controls stand at first"
     )
-    command.add_argument("--port", type=_whole, help="that it listens on; a free one if left out")
+    command.add_argument("--port", type=_whole(1, 65535), help="that it listens on; a free one if left out")
     command.add_argument("--no-browser", action="store_true", help="do not open a browser")
 
 
@@ -199,7 +211,7 @@ def _add_new(commands: Any) -> None:
       --highest-speed-rpm 1000 --power-kW 447 --pinion-speed-rpm 5000""",
     )
     command.add_argument(
-        "file", metavar="FILE", nargs="?", type=Path, default=Path("my_drive.yaml"), help="(%(default)s)"
+        "file", metavar="FILE", nargs="?", type=_place, default=Path("my_drive.yaml"), help="(%(default)s)"
     )
     command.add_argument("--replace", action="store_true", help="replace a file that is there")
     command.add_argument("--name", help=f"{NAME.meaning}; that of the file if left out")
@@ -227,8 +239,9 @@ def _add_examples(commands: Any) -> None:
   facegear examples case_1 > my_drive.yaml
   facegear examples --schema > drive.schema.json     JSON Schema, for editors""",
     )
-    command.add_argument("name", metavar="NAME", nargs="?", choices=("", *example_names()), default="")
-    command.add_argument("--schema", action="store_true", help="print the JSON Schema of drive files")
+    what = command.add_mutually_exclusive_group()
+    what.add_argument("name", metavar="NAME", nargs="?", choices=example_names())
+    what.add_argument("--schema", action="store_true", help="print the JSON Schema of drive files")
 
 
 def _flag(key: Key) -> str:
@@ -250,33 +263,41 @@ def _add_file_and_output(command: argparse.ArgumentParser, kind: str) -> None:
     command.add_argument(
         "--output",
         metavar="FOLDER",
-        type=Path,
+        type=_place,
         help=f"where it goes; FILE_{kind} beside the file if left out",
     )
 
 
 def _add_jobs(command: argparse.ArgumentParser) -> None:
+    words = f"a whole number from 1 to {_MOST_PROCESSES}, or -1 for one on each processor"
     command.add_argument(
-        "--jobs", type=_processes, default=-1, help="processes; -1 for one on each processor (%(default)s)"
+        "--jobs",
+        type=_given(int, words, lambda number: number == -1 or 1 <= number <= _MOST_PROCESSES),
+        default=-1,
+        help="processes; -1 for one on each processor (%(default)s)",
     )
 
 
-def _whole(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"must be at least 1, got {number}")
+def _given(kind: Callable[[str], T], words: str, is_valid: Callable[[T], bool]) -> Callable[[str], T]:
+    """Make what turns an argument into a number; of any other text it says what would be one."""
+
+    def number(text: str) -> T:
+        with suppress(ValueError):
+            if is_valid(value := kind(text)):
+                return value
+        raise argparse.ArgumentTypeError(f"must be {words}, got {text!r}")
+
     return number
 
 
-def _processes(text: str) -> int:
-    number = int(text)
-    if number == 0:
-        raise argparse.ArgumentTypeError("must be at least 1, or -1 for one on each processor, got 0")
-    return number
+def _whole(lowest: int, highest: int) -> Callable[[str], int]:
+    return _given(
+        int, f"a whole number from {lowest} to {highest}", lambda number: lowest <= number <= highest
+    )
 
 
-def _part(text: str) -> float:
-    number = float(text)
-    if not 1e-6 <= number <= 0.5:
-        raise argparse.ArgumentTypeError(f"must be 1e-6 to 0.5, got {text}")
-    return number
+def _place(text: str) -> Path:
+    """Path of a file or folder; no text is none, although it would be the current folder."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f"must be a path, got {text!r}")
+    return Path(text)

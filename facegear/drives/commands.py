@@ -10,6 +10,7 @@ import json
 import re
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -46,10 +47,10 @@ def report(options: argparse.Namespace) -> int:
     file = read_drive_file(options.file)
     # These take longer to load than a mistake takes to be told.
     from facegear.drives.findings import Findings
-    from facegear.drives.report_files import results_directory, write_report
+    from facegear.drives.report_files import FILES, results_directory, write_report
 
     folder = options.output or results_directory(options.file)
-    _require_folder(folder)
+    _require_folder(folder, FILES)
     found = Findings(file, options.cells, options.tolerance, options.most_steps, options.jobs, say)
     page = write_report(found, folder, say)
     tell(f"The report: {page.resolve().as_uri()}")
@@ -61,11 +62,11 @@ def assess_drive(options: argparse.Namespace) -> int:
     file = read_drive_file(options.file)
     # These take longer to load than a mistake takes to be told.
     from facegear.drives.assess import assess
-    from facegear.drives.assessment_files import write_assessment
+    from facegear.drives.assessment_files import FILES, write_assessment
     from facegear.drives.report_files import results_directory
 
     folder = options.output or results_directory(options.file, "assessment")
-    _require_folder(folder)
+    _require_folder(folder, FILES)
     found = assess(file, jobs=options.jobs, tell=say)
     page = write_assessment(found, folder)
     tell(found.headline)
@@ -73,9 +74,11 @@ def assess_drive(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _require_folder(folder: Path) -> None:
-    """Refuse a place that results cannot be written to before they are computed."""
-    if reason := _not_writable(folder):
+def _require_folder(folder: Path, files: Sequence[str]) -> None:
+    """Refuse a place that results cannot be written to, or where they would replace others, before all computing."""
+    from facegear.drives.report_files import foreign
+
+    if reason := _not_writable(folder) or foreign(folder, files):
         raise UsageError(f"--output must be a folder that can be written to, got {str(folder)!r}: {reason}")
 
 
@@ -103,6 +106,8 @@ def check(options: argparse.Namespace) -> int:
         tell(f"{name}: can be used")
         for sentence in file.not_buildable:
             tell(f"{name}: cannot be built as a solid shaft: {sentence}")
+        if file.yields:
+            tell(f"{name}: the pinion's teeth may yield at the root: {file.yields}")
     return code
 
 

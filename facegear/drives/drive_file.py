@@ -6,6 +6,7 @@ would be valid. Keys stand in :mod:`facegear.drives.drive_keys`, each is checked
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -45,6 +46,10 @@ from facegear.support.parameters import rpm
 from facegear.support.plain_yaml import read_plain_yaml
 
 _INCH = 25.4e-3
+
+
+class _BoreInTeethError(ValueError):
+    """The bore reaches into the teeth: of about the right size, so that no frequent mistake explains it."""
 
 
 class DriveFileError(ValueError):
@@ -105,6 +110,14 @@ class DriveFile:
     def not_buildable(self) -> tuple[str, ...]:
         """What of the shafts cannot be built, one sentence each; empty without lengths of shafts."""
         return () if self.torsional is None else self.torsional.not_buildable
+
+    @property
+    def yields(self) -> str:
+        """How far the stress at the root of the pinion's tooth is above what is allowed; empty if it is not."""
+        stress, allowed = (
+            1e-6 * value for value in self.requirements.root_stresses(self.transverse.gear.body)
+        )
+        return f"largest stress {stress:.4g} MPa, allowable {allowed:.4g} MPa" if stress > allowed else ""
 
 
 def read_drive_file(path: str | Path) -> DriveFile:
@@ -180,6 +193,8 @@ def parse_drive(content: bytes | str, source: str = "drive file") -> DriveFile:
         found = checked_values(written)
         try:
             return replace(_drive_file(found), content=written)
+        except _BoreInTeethError:
+            raise
         except ValueError as error:
             raise ValueError(f"{error}{_guess(found)}") from None
     except (TypeError, ValueError) as error:
@@ -247,7 +262,8 @@ def _check_bore(drive: Drive, bore_radius: float) -> None:
     lowest = BORE_RATIO_RANGE[0] * drive.outer_radius
     highest = min(BORE_RATIO_RANGE[1] * drive.outer_radius, drive.inner_radius)
     if not lowest <= bore_radius < highest:
-        raise ValueError(
+        among_teeth = drive.inner_radius <= bore_radius <= drive.outer_radius
+        raise (_BoreInTeethError if among_teeth else ValueError)(
             f"body.bore_radius_mm must lie between {1e3 * lowest:.6g} and {1e3 * highest:.6g} mm for these gears, "
             f"whose teeth reach from {1e3 * drive.inner_radius:.6g} to {1e3 * drive.outer_radius:.6g} mm, "
             f"got {1e3 * bore_radius:.6g} mm"
@@ -285,19 +301,20 @@ def _guess(found: FileValues) -> str:
     speeds = {"lowest_speed": operation["highest_speed"], "highest_speed": operation["lowest_speed"]}
     # What is 8 mm as a module is 25.4 mm/8 as a pitch, and the same the other way round.
     module = 1e-3 * _INCH / gears["module"]
-    other = (
-        "a diametral pitch per inch"
-        if found.key("gears", "module") == "gears.module_mm"
-        else "a module in mm"
-    )
-    guesses = (
+    in_mm = found.key("gears", "module") == "gears.module_mm"
+    # Pitches are whole numbers: a module that is none was not meant as one.
+    could_be_other = not in_mm or math.isclose(1e3 * gears["module"], round(1e3 * gears["module"]))
+    guesses = [
         ("gears.pinion_teeth and gears.gear_teeth swapped?", found.replaced("gears", **teeth)),
         (
             "operation.lowest_speed_rpm and operation.highest_speed_rpm swapped?",
             found.replaced("operation", **speeds),
         ),
-        (f"is {found.shown('gears', 'module')} {other}?", found.replaced("gears", module=module)),
-    )
+    ]
+    if could_be_other:
+        other = "a diametral pitch per inch" if in_mm else "a module in mm"
+        shown = f"is {found.shown('gears', 'module')} {other}?"
+        guesses.append((shown, found.replaced("gears", module=module)))
     for words, changed in guesses:
         try:
             _drive_file(changed)

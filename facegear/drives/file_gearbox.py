@@ -58,8 +58,7 @@ def _play(gearbox: dict[str, Any], torsional: Any, torque: float) -> Backlash | 
     """Give the gearbox the play of its teeth, if there is any."""
     if gearbox["gap"] == 0.0:
         return None
-    if gearbox["input_length"] or gearbox["output_length"]:
-        raise ValueError("gap must be 0 beside lengths of shafts: play is computed with massless ones")
+    _require_massless_shafts("gap", 1e6, "µm", gearbox, "play")
     if gearbox["gap"] > (module := torsional.drive.module):
         raise ValueError(
             f"gap must be at most the module, {1e6 * module:.6g} µm, got {1e6 * gearbox['gap']:.6g} µm"
@@ -71,6 +70,16 @@ def _cracked(gearbox: dict[str, Any], torsional: Any, torque: float) -> DamagedT
     """Damage one tooth of the gearbox, if the file does."""
     if gearbox["loss"] == 0.0:
         return None
-    if gearbox["input_length"] or gearbox["output_length"]:
-        raise ValueError("loss must be 0 beside lengths of shafts: damage is computed with massless ones")
+    _require_massless_shafts("loss", 1e2, "%", gearbox, "damage")
     return DamagedTooth(torsional, gearbox["loss"], torque=torque)
+
+
+def _require_massless_shafts(name: str, per_si: float, unit: str, gearbox: dict[str, Any], what: str) -> None:
+    """Refuse lengths of shafts beside what is computed without their mass."""
+    lengths = {end: gearbox[end] for end in ("input_length", "output_length") if gearbox[end]}
+    if lengths:
+        beside = " and ".join(f"{end} = {1e3 * length:.6g} mm" for end, length in lengths.items())
+        raise ValueError(
+            f"{name} must be 0 beside {beside}: {what} is computed with massless shafts, got "
+            f"{per_si * gearbox[name]:.6g} {unit}"
+        )

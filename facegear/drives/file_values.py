@@ -14,7 +14,7 @@ from typing import Any
 
 from facegear.drives.drive_keys import NAME, SECTIONS
 from facegear.drives.keys import LONGEST_TEXT, MOST_PINIONS, Key
-from facegear.support.parameters import integer_at_least, within
+from facegear.support.parameters import within
 
 # Factors by which people miss a unit, after that to SI.
 _FACTORS = (1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9)
@@ -98,7 +98,8 @@ def _chosen(section: str, same: tuple[Key, ...], entries: Mapping[str, Any]) -> 
     names = " or ".join(f"{section}.{key.name}" for key in same)
     given = [key for key in same if key.name in entries]
     if len(given) > 1:
-        raise ValueError(f"{names.replace(' or ', ' and ')} say the same: give one of them")
+        both = " and ".join(f"{section}.{key.name} = {_shown(entries[key.name])}" for key in given)
+        raise ValueError(f"{both} say the same: give one of them")
     if not given and len(same) > 1:
         raise ValueError(f"{names} is missing: {same[0].plain_meaning}; valid is {same[0].valid}")
     return given[0] if given else same[0]
@@ -172,9 +173,11 @@ def checked_value(path: str, key: Key, value: Any) -> Any:
             raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
         return tuple(key.to_si(_number(f"{path}[{i}]", key, entry)) for i, entry in enumerate(value))
     if key.kind == "integer":
-        if key.or_zero and value == 0 and not isinstance(value, bool):
-            return 0
-        return int(within(path, integer_at_least(path, value, int(key.lowest)), key.lowest, key.highest))
+        number = isinstance(value, int) and not isinstance(value, bool)
+        if not (number and (key.lowest <= value <= key.highest or (key.or_zero and value == 0))):
+            error = ValueError if number else TypeError
+            raise error(f"{path} must be {key.valid_entry}, got {_shown(value)}{_text_hint(value)}")
+        return int(value)
     return key.to_si(_number(path, key, value))
 
 

@@ -15,6 +15,8 @@ from facegear.support.parameters import WATT_PER_HORSEPOWER
 Kind = Literal["integer", "number", "text", "choice", "numbers", "choices"]
 LONGEST_TEXT = 80
 MOST_PINIONS = 12
+# Along each side of a map.
+MOST_CELLS = 1000
 # Value in SI is value in the file divided by this.
 PER_SI: Mapping[str, float] = MappingProxyType(
     {

@@ -12,6 +12,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from facegear.drives.refusals import told
@@ -19,6 +20,9 @@ from facegear.support.provenance import made_by
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+_MAKER = "Made by facegear"
 
 
 class Part(Protocol):
@@ -210,6 +214,14 @@ class Section:
         return self.as_html()
 
 
+def is_page(path: Path) -> bool:
+    """Whether there is a page at a path, and one that this package wrote."""
+    try:
+        return f"<footer>{_MAKER}" in path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
 def attempted(title: str, make: Callable[[], Section]) -> Section:
     """Make a section, or one that says why there is none: what fails does not take the others along.
 
@@ -294,7 +306,7 @@ def page(title: str, sections: Sequence[Section]) -> str:
 <nav aria-label="Sections"><ul>{contents}</ul></nav>
 {body}
 </main>
-<footer>Made by facegear {escaped(made["facegear_version"])}{escaped(commit)}.</footer>
+<footer>{_MAKER} {escaped(made["facegear_version"])}{escaped(commit)}.</footer>
 </body>
 </html>
 """

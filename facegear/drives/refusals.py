@@ -35,8 +35,8 @@ _OF_PROGRAMS = (
     (
         rf"multipliers are known to ({_NUMBER}) only, rounding counted, which is not enough for a threshold of "
         rf"({_NUMBER}): give a larger one.*Radau",
-        r"multipliers are known to \1 only, and \2 is needed to tell what grows from what dies, as where dampers are "
-        "very strong",
+        r"multipliers are known to \1 only, and \2 is needed to tell what grows from what dies, as where dampers or "
+        "forces are very strong",
     ),
     (r"; allow_unstable=True finds the motion that any disturbance would leave", ""),
     (r"; take it out with facegear\.WithoutRigidMotion\(model\), which changes no other multiplier", ""),
@@ -119,8 +119,12 @@ def built(found: FileValues, section: str, build: Callable[[], T]) -> T:
         text = told(error)
         if (refused := _TORQUE.search(text)) is not None:
             raise ValueError(_of_power(found, refused)) from error
-        for quantity in found.keys.get(section, {}):
-            text = re.sub(rf"(?<![\w.]){quantity}(?!\w)", found.key(section, quantity), text)
+        for quantity, key in found.keys.get(section, {}).items():
+            path = found.key(section, quantity)
+            text = re.sub(rf"(?<![\w.]){quantity}(?!\w)", path, text)
+            if key.or_zero:
+                pattern = rf"(?<={re.escape(path)} must )(be )?(?=an integer from|lie in)"
+                text = re.sub(pattern, "be 0, or ", text)
         raise ValueError(text if f"{section}." in text else f"{section}: {text}") from error
 
 

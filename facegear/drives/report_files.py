@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import errno
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import xarray as xr
 from facegear.drives import export, report_columns, report_rows
 from facegear.drives.contacts import NAMES
 from facegear.drives.findings import TORSION, Findings
-from facegear.drives.page import Listing, Paragraph, Section, attempted, page
+from facegear.drives.page import Listing, Paragraph, Section, attempted, is_page, page
 from facegear.drives.sections import SECTIONS
 from facegear.drives.verdict import FORCES
 from facegear.geometry import solids
@@ -47,6 +48,22 @@ def results_directory(drive_file: str | Path, kind: str = "results") -> Path:
     """
     path = Path(drive_file)
     return path.with_name(f"{path.stem}_{kind}")
+
+
+def foreign(folder: Path, files: Sequence[str]) -> str:
+    """Say which file in a folder would be replaced although no earlier run wrote it; nothing if none would.
+
+    Parameters
+    ----------
+    folder : Path
+        It need not be there.
+    files : sequence of str
+        Names that a run writes or removes, its page first: where a page of this package lies, the others are its.
+    """
+    there = [name for name in files if (folder / name).exists()]
+    if not there or is_page(folder / files[0]):
+        return ""
+    return f"{there[0]} is there and would be replaced, and no {files[0]} of facegear says that it is its own"
 
 
 def parts_of(found: Findings) -> dict[str, Callable[[Path], object]]:
@@ -171,8 +188,10 @@ def write_report(found: Findings, folder: str | Path, say: Callable[[str], objec
     Raises
     ------
     OSError
-        If the folder cannot be written to.
+        If the folder cannot be written to, or holds files of these names that are not of an earlier report.
     """
+    if reason := foreign(Path(folder), FILES):
+        raise FileExistsError(errno.EEXIST, reason, str(folder))
     count = len(SECTIONS) + 1
     made = []
     with folder_written_whole(Path(folder), FILES) as place:

@@ -13,7 +13,7 @@ import numpy as np
 
 from facegear.drives import findings, report_columns, report_rows
 from facegear.drives.findings import INPUT_STIFFNESS, TORSION, Findings
-from facegear.drives.page import Listing, Paragraph, Part, Picture, Section, Table
+from facegear.drives.page import Listing, Paragraph, Part, Picture, Section, Table, attempted
 from facegear.drives.report_rows import Row
 from facegear.drives.verdict import verdict as verdict_of
 from facegear.floquet.models import value_of
@@ -324,8 +324,10 @@ def strength(found: Findings) -> Section:
         "The critical power is that of the disk alone under the driving forces of all pinions (chapter 6 of "
         "the book). Pinions hold the disk and change it."
     )
-    rows = (*report_rows.strength(found.file), *found.powers)
-    return Section("Strength and power", (number_table(rows, "Stress at the root and critical power"), words))
+    stress = number_table(report_rows.strength(found.file), "Stress at the root")
+    # Teeth break or not whatever becomes of the disk.
+    power = attempted("", lambda: Section("", (number_table(found.powers, "Critical power"), words)))
+    return Section("Strength and power", (stress, *power.parts))
 
 
 def what_to_change(found: Findings) -> Section:

@@ -13,13 +13,13 @@ from facegear.drives import report_arrays
 from facegear.drives.contacts import NAMES, torsional_under
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.drive_keys import SECTIONS
-from facegear.drives.keys import OVER_SI, Key
+from facegear.drives.keys import MOST_CELLS, OVER_SI, Key
 from facegear.drives.refusals import told
 from facegear.drives.verdict import driven
 from facegear.floquet.models import Model, replace_parameter, system_at, value_of
 from facegear.mechanics.edge_stiffness import Following
 from facegear.support import labelled
-from facegear.support.parameters import finite, integer_at_least, rad_per_s, rpm
+from facegear.support.parameters import finite, integer_within, rad_per_s, rpm
 from facegear.support.tables import write_table
 
 _GEARBOX, _TOLERANCES = "gearbox", "tolerances"
@@ -145,7 +145,7 @@ def sweep(
     speeds_rpm : tuple of float, optional
         Lowest and highest speed of the face gear [rpm]; those of the file if left out.
     cells : int
-        Number of values and of speeds, at least 2.
+        Number of values and of speeds, 2 to 1000.
     contact, following
         As for :func:`models`.
     jobs : int
@@ -162,10 +162,10 @@ def sweep(
         If the key is none that can be swept, or its values or the speeds do not ascend or are out of range.
     """
     keys = sweepable(models(file, contact, following))
+    cells = integer_within("cells", cells, 2, MOST_CELLS)
     if key not in keys:
         raise ValueError(f"parameter must be one of {', '.join(keys)}, got {key!r}")
     model, chosen = keys[key]
-    cells = integer_at_least("cells", cells, 2)
     own = chosen.from_si(value_of(model, chosen.si_name))
     low = max(_HALF * own, chosen.lowest) if lowest is None else finite("from", lowest)
     high = min((1.0 + _HALF) * own, chosen.highest) if highest is None else finite("to", highest)

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import count
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -72,10 +73,15 @@ class Drive(ToothLimits):
     def _require_flank(self, name: str) -> None:
         """Refuse what leaves no flank, as the pinion that is the shaper; its teeth are called by a name."""
         if self.half_tooth_at_shaper_tip <= 0.0:
+            enough = next(
+                teeth
+                for teeth in count(self.pinion_teeth)
+                if self.with_teeth(teeth).half_tooth_at_shaper_tip > 0.0
+            )
             raise ValueError(
                 f"{name}={self.pinion_teeth} is too few: at a pressure angle of "
                 f"{math.degrees(self.pressure_angle):.4g}° the shaper's tooth is pointed below its addendum "
-                f"circle of {SHAPER_ADDENDUM} modules; take more teeth or a smaller pressure angle"
+                f"circle of {SHAPER_ADDENDUM} modules; take at least {enough} teeth, or a smaller pressure angle"
             )
         if self.inner_limit >= self.outer_limit:
             raise ValueError(

@@ -82,9 +82,13 @@ class Proportions:
         """The shaper, as a pinion, with the face gear that it makes: this drive itself if it has as many teeth."""
         if self.shaper_teeth is None or self.shaper_teeth == self.pinion_teeth:
             return self
+        return self.with_teeth(self.shaper_teeth)
+
+    def with_teeth(self, teeth: int) -> Self:
+        """Give pinion and shaper as many teeth; nothing is checked."""
         made = object.__new__(type(self))
         parts = {part.name: getattr(self, part.name) for part in fields(self)}
-        parameters.keep(made, **(parts | {"pinion_teeth": self.shaper_teeth, "shaper_teeth": None}))
+        parameters.keep(made, **(parts | {"pinion_teeth": teeth, "shaper_teeth": None}))
         return made
 
     @property

@@ -11,6 +11,9 @@ from facegear.floquet.models import Model
 from facegear.support.parameters import finite_array, rpm
 from facegear.support.types import FloatArray
 
+MOST_CELLS = 10_000_000
+"""Of one map."""
+
 
 def checked_speeds(speeds: ArrayLike) -> FloatArray:
     """Check that speeds [rad/s] are finite, positive and ascending, and return them as an array of shape (S,).
@@ -28,6 +31,20 @@ def checked_speeds(speeds: ArrayLike) -> FloatArray:
     if (np.diff(array) <= 0.0).any():
         raise ValueError("speeds must ascend strictly, got equal or descending neighbours")
     return array
+
+
+def require_cells(speeds: FloatArray, values: FloatArray) -> None:
+    """Refuse axes of so many cells that no memory holds them, nor anybody waits for them.
+
+    Raises
+    ------
+    ValueError
+        Naming the number of either axis.
+    """
+    if speeds.size * values.size > MOST_CELLS:
+        raise ValueError(
+            f"speeds times values must be at most {MOST_CELLS} cells, got {speeds.size} times {values.size}"
+        )
 
 
 def speed_coordinates(speeds: FloatArray) -> dict[str, Any]:

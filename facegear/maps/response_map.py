@@ -18,7 +18,7 @@ from facegear.floquet.models import Model, parameter_path, replace_parameter, re
 from facegear.floquet.modes import mean_matrices, natural_exponents
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.response import SteadyResponse, steady_response
-from facegear.maps.axes import checked_speeds, checked_values, speed_coordinates
+from facegear.maps.axes import checked_speeds, checked_values, require_cells, speed_coordinates
 from facegear.maps.parallel import computed, parts_of
 from facegear.support.parameters import number_of_workers, within
 from facegear.support.threads import one_thread
@@ -173,6 +173,7 @@ def response_map(
     jobs = number_of_workers("jobs", jobs)
     speeds = checked_speeds(speeds)
     given = checked_values(values)
+    require_cells(speeds, given)
     path = parameter_path(model, parameter)
     models = [replace_parameter(model, parameter, value) for value in given.tolist()]
     asked = _asked(system_at(models[0], float(speeds[0])), method)

@@ -32,7 +32,7 @@ from facegear.floquet.models import (
     require_model,
 )
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.maps.axes import checked_speeds, checked_values, speed_coordinates
+from facegear.maps.axes import checked_speeds, checked_values, require_cells, speed_coordinates
 from facegear.maps.map_columns import spectral_radius
 from facegear.maps.parallel import Task, Workers, computed
 from facegear.maps.sweep import Sweep
@@ -104,6 +104,7 @@ def stability_map(
     require_model(model)
     speeds = checked_speeds(speeds)
     values = checked_values(values)
+    require_cells(speeds, values)
     jobs = number_of_workers("jobs", jobs)
     name = parameter_path(model, parameter)[-1]
     sweep = Sweep(model, parameter, tuple(values.tolist()), method)

@@ -68,12 +68,9 @@ class Body:
         require_kinds(self, drive=Drive, material=Material)
         keep(self, thickness_ratio=within("thickness_ratio", self.thickness_ratio, *THICKNESS_RATIO_RANGE))
         lowest, highest = (ratio * self.outer_radius for ratio in BORE_RATIO_RANGE)
-        keep(self, bore_radius=within("bore_radius", self.bore_radius, lowest, highest, "m"))
-        if self.bore_radius >= self.drive.inner_radius:
-            raise ValueError(
-                f"bore_radius must be smaller than the inner radius {self.drive.inner_radius:.6g} m of the "
-                f"teeth, got {self.bore_radius!r} m"
-            )
+        # Inside the teeth: what is as large as their inner radius leaves no rim.
+        largest = min(highest, math.nextafter(self.drive.inner_radius, 0.0))
+        keep(self, bore_radius=within("bore_radius", self.bore_radius, lowest, largest, "m"))
         keep(
             self,
             nodal_circles=integer_within("nodal_circles", self.nodal_circles, 0, MAX_NODAL_CIRCLES),

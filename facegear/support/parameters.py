@@ -84,17 +84,22 @@ def finite(name: str, value: Any, unit: str = "") -> float:
     ValueError
         NaN or infinite.
     """
-    if type(value) is float and math.isfinite(value):  # as nearly all are
+    number = _real(name, value, unit)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be finite{_in(unit)}, got {_plain(value)!r}")
+    return number
+
+
+def _real(name: str, value: Any, unit: str) -> float:
+    """Value as a float, infinite and undefined ones among them."""
+    if type(value) is float:  # as nearly all are
         return value
     if isinstance(value, _NO_NUMBERS) or not isinstance(value, Real):
         raise TypeError(f"{name} must be a real number{_in(unit)}, got {_plain(value)!r}")
     try:
-        number = float(value)
+        return float(value)
     except OverflowError:  # an integer of more than 308 digits
-        number = math.inf
-    if not math.isfinite(number):
-        raise ValueError(f"{name} must be finite{_in(unit)}, got {_plain(value)!r}")
-    return number
+        return math.inf
 
 
 def _in(unit: str) -> str:
@@ -131,11 +136,14 @@ def within(name: str, value: Any, lowest: float, highest: float, unit: str = "",
 
     Raises
     ------
-    TypeError, ValueError
-        As in `finite`, and ValueError outside the interval. A value that would be valid after multiplying or
-        dividing by 1000 is named as a likely mistake of units.
+    TypeError
+        As in `finite`.
+    ValueError
+        Outside the interval, as NaN is, too. A value that would be valid after multiplying or dividing by 1000 is named
+        as a likely mistake of units.
     """
-    number = finite(name, value, unit)
+    bounded = math.isfinite(highest - lowest)
+    number = _real(name, value, unit) if bounded else finite(name, value, unit)
     if lowest <= number <= highest:
         return number
     message = f"{name} must lie in [{lowest:.6g}, {highest:.6g}]{_in(unit)}, got {_shown(value, unit)}"
@@ -147,7 +155,7 @@ def within(name: str, value: Any, lowest: float, highest: float, unit: str = "",
 
 def angle_within(name: str, value: Any, lowest_deg: float, highest_deg: float) -> float:
     """Check an angle [rad] against limits [degree]; an angle that looks like degrees is named as such."""
-    number = finite(name, value, "rad")
+    number = _real(name, value, "rad")
     # The limits themselves, however they were converted, are valid.
     slack = 1e-12
     if math.radians(lowest_deg) - slack <= number <= math.radians(highest_deg) + slack:
@@ -192,8 +200,8 @@ def integer_at_least(name: str, value: Any, lowest: int) -> int:
 
 def integer_within(name: str, value: Any, lowest: int, highest: int) -> int:
     """Check that `value` is a whole number from `lowest` to `highest`; errors as in `integer_at_least`."""
-    number = integer_at_least(name, value, lowest)
-    if number > highest:
+    number = whole_number(name, value, f" from {lowest} to {highest}")
+    if not lowest <= number <= highest:
         raise ValueError(f"{name} must be an integer from {lowest} to {highest}, got {number!r}")
     return number
 

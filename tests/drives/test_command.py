@@ -282,6 +282,19 @@ def test_the_notebook_shows_every_section_of_the_page(tmp_path):
     assert (tmp_path / "build" / "drives" / "my_drive" / "tooth_mm.stl").is_file()
 
 
+@pytest.mark.parametrize(("command", "name"), [("report", "summary.csv"), ("assess", "models.csv")])
+def test_a_folder_with_files_of_others_is_refused_before_anything_is_computed(
+    command, name, tmp_path, capsys
+):
+    (tmp_path / name).write_text("mine", encoding="utf-8")
+    file = str(ROOT / "data" / "drives" / "case_1.yaml")
+    assert main([command, file, "--output", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("facegear: error: --output must be a folder")
+    assert f"{name} is there and would be replaced" in said
+    assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
+
+
 @pytest.mark.parametrize("command", ["report", "assess"])
 def test_a_folder_that_cannot_be_made_is_refused_before_anything_is_computed(
     command, tmp_path, capsys, monkeypatch

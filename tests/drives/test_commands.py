@@ -33,6 +33,17 @@ def test_one_wrong_file_does_not_keep_the_others_from_being_checked(here, capsys
     assert "none.yaml' cannot be read" in err
 
 
+def test_teeth_that_yield_are_told(here, capsys):
+    (here / "strong.yaml").write_text(re.sub("power_kW: .*", "power_kW: 100000", CASE_1), encoding="utf-8")
+    assert main(["check", "strong.yaml"]) == 0
+    used, yields = capsys.readouterr().out.splitlines()
+    assert used == "strong.yaml: can be used"
+    stress, allowed = map(float, re.search(r"stress (\S+) MPa, allowable (\S+) MPa", yields).groups())
+    # That of 447.42 kW is 249.8 MPa; 440 MPa over a safety factor of 1.5.
+    assert stress == pytest.approx(249.806 * 100000 / 447.42, rel=1e-3)
+    assert allowed == pytest.approx(440 / 1.5, rel=1e-3)
+
+
 FLAGS = [
     "--pinion-teeth",
     "26",

@@ -148,7 +148,17 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
         (
             "bore_radius_mm: 50",
             "bore_radius_mm: 190",
-            r"body.bore_radius_mm .* 11.5969 and 188.433 mm .*got 190 mm",
+            r"body.bore_radius_mm .* 11.5969 and 188.433 mm .*got 190 mm$",
+        ),
+        (
+            "module_mm: 3.175 # diametral pitch 8 per inch\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 50",
+            "module_mm: 4\n\nbody:\n  thickness_ratio: 0.03\n  bore_radius_mm: 240",
+            r"body.bore_radius_mm .* whose teeth reach from 237.396 .* got 240 mm$",
+        ),
+        (
+            "gear_teeth: 130",
+            "gear_teeth: 27",
+            r"body.bore_radius_mm must lie between 2.4086 and .* got 50 mm$",
         ),
         (
             "mass: 1.0",
@@ -163,9 +173,9 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
         (
             "gear_teeth: 130",
             "gear_teeth: 130\n  shaper_teeth: 25",
-            r"gears.shaper_teeth must be at least 26, got 25",
+            r"gears.shaper_teeth must be 0, or an integer from 26 to 129, got 25$",
         ),
-        ("pinion_teeth: 26", "pinion_teeth: 11", r"gears.pinion_teeth=11 is too few.*take more teeth"),
+        ("pinion_teeth: 26", "pinion_teeth: 11", r"gears.pinion_teeth=11 is too few.*take at least 12 teeth"),
         (
             "pinion_teeth: 26",
             "pinion_teeth: 140",

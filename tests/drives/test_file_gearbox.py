@@ -24,7 +24,12 @@ class TestPlay:
             ("backlash_um: 1e5", "gearbox.backlash_um must be at most the module, 3175 µm, got 100000 µm"),
             (
                 "backlash_um: 80\n  input_length_mm: 200",
-                "gearbox.backlash_um must be 0 beside lengths of shafts",
+                "gearbox.backlash_um must be 0 beside gearbox.input_length_mm = 200 mm: .*, got 80 µm",
+            ),
+            (
+                "damaged_tooth_percent: 20\n  input_length_mm: 200\n  output_length_mm: 300",
+                "damaged_tooth_percent must be 0 beside .*input_length_mm = 200 mm and .*output_length_mm = 300 mm: "
+                ".*, got 20 %",
             ),
         ],
     )

@@ -11,6 +11,7 @@ from facegear.drives.drive_file import parse_drive
 from facegear.drives.examples import example_text
 from facegear.drives.findings import Findings
 from facegear.drives.page import attempted
+from facegear.drives.page import page as page_of
 from facegear.support.labelled import load
 from tests.drives.test_page import Reader
 
@@ -70,7 +71,9 @@ def test_without_cases_tables_and_meshes_are_still_written(file, tmp_path, monke
 
     monkeypatch.setattr(verdict, "cases", fails)
     found = Findings(file, cells=3, most_steps=1, jobs=1)
+    earlier = page_of("Earlier", ())
     (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "report.html").write_text(earlier, encoding="utf-8")
     for name in ("tongues_torsion.nc", "play.nc", "tongues_mine.nc"):
         (tmp_path / "results" / name).write_text("of another drive")
     page = report_files.write_report(found, tmp_path / "results")
@@ -82,6 +85,21 @@ def test_without_cases_tables_and_meshes_are_still_written(file, tmp_path, monke
     text = Reader(page.read_text(encoding="utf-8")).text
     assert "tongues.csv was not written: no tongue was found" in text
     assert "contact ratio, Tregold" in text
+    assert "allowable over largest stress" in text
+
+
+@pytest.mark.parametrize("name", ["report.html", "summary.csv", "tongues_torsion.nc"])
+def test_files_that_no_report_wrote_are_not_replaced(file, tmp_path, name, monkeypatch):
+    def computes(*_, **__):
+        raise AssertionError("something was computed")
+
+    monkeypatch.setattr(verdict, "cases", computes)
+    (tmp_path / name).write_text("mine", encoding="utf-8")
+    (tmp_path / "notes.txt").write_text("mine, too", encoding="utf-8")
+    with pytest.raises(FileExistsError, match=f"{name} is there and would be replaced"):
+        report_files.write_report(Findings(file, cells=3, most_steps=1, jobs=1), tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([name, "notes.txt"])
+    assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
 
 
 def test_torsion_that_fails_leaves_the_disk(tmp_path, monkeypatch):

@@ -76,7 +76,8 @@ def test_nothing_of_a_number_that_may_be_zero_is_swept_too():
         ({"lowest": -1.0}, "from and to must ascend and be 0, or a number from 1e-06 to 1000 for stiffness"),
         ({"speeds_rpm": (500.0, 400.0)}, "speeds must be greater than 0 and ascend, got 500 to 400"),
         ({"contact": "loaded"}, "contact must be tregold or geometric for these teeth, got 'loaded'"),
-        ({"cells": 1}, "cells must be at least 2"),
+        ({"cells": 1}, "cells must be an integer from 2 to 1000, got 1"),
+        ({"cells": 100_000}, "cells must be an integer from 2 to 1000, got 100000"),
     ],
 )
 def test_what_cannot_be_swept(changes, told):

@@ -553,6 +553,11 @@ def test_the_cache_is_not_used_for_another_map(two_maps, tmp_path, monkeypatch, 
         ([1.0], [np.inf], "values must be finite"),
         ([1.0], [0.1, 0.1], "values must differ"),
         ([[1.0]], [0.1], "speeds must list"),
+        (
+            np.linspace(1.0, 2.0, 100_000),
+            np.linspace(0.1, 0.2, 100_000),
+            "at most 10000000 cells, got 100000 times 100000",
+        ),
     ],
 )
 def test_axes_are_checked(speeds, values, message):

@@ -104,7 +104,7 @@ def test_a_shifted_force_is_a_turned_field(angle, theta, direction):
     ("change", "error", "message"),
     [
         ({"body": 3}, TypeError, "body must be a Body"),
-        ({"force": math.nan}, ValueError, "force must be finite"),
+        ({"force": math.nan}, ValueError, "force must lie in .*got nan N"),
         ({"force": 1e11}, ValueError, "force must lie"),
         ({"force": "1"}, TypeError, "force must be a real number"),
         ({"speed": -1.0}, ValueError, "speed must lie"),
@@ -124,7 +124,7 @@ def test_bad_places_are_named():
     stress = EdgeLoadStress(CASE_1, 1.0)
     with pytest.raises(ValueError, match="bore ratio"):
         stress.radial(2, 0.3)
-    with pytest.raises(ValueError, match="harmonic must be at least 0"):
+    with pytest.raises(ValueError, match="harmonic must be an integer from 0 to 400, got -1"):
         stress.shear(-1, 0.1)
     with pytest.raises(TypeError, match="harmonic must be an integer"):
         stress.hoop(1.5, 0.1)

@@ -50,7 +50,11 @@ class TestBody:
             ({"thickness_ratio": 3.0}, ValueError, "thickness_ratio"),
             ({"bore_radius": 50.0}, ValueError, "bore_radius=0.05 would be valid"),
             ({"bore_radius": 0.005}, ValueError, "bore_radius"),
-            ({"bore_radius": 0.19}, ValueError, "bore_radius must be smaller than the inner radius"),
+            (
+                {"bore_radius": 0.19},
+                ValueError,
+                r"bore_radius must lie in \[0.0115969, 0.188433\] in m, got 0.19 m",
+            ),
             ({"nodal_circles": 5}, ValueError, "nodal_circles"),
             ({"nodal_diameters": 2.0}, TypeError, "nodal_diameters"),
         ],

@@ -54,6 +54,24 @@ def test_interval_message_names_a_factor_of_1000():
     assert "1000" not in str(caught.value)
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 10**400])
+def test_of_what_is_not_finite_the_interval_is_told(value):
+    with pytest.raises(ValueError, match=r"x must lie in \[1, 2\] in m, got (nan|-?inf|10+)"):
+        parameters.within("x", value, 1.0, 2.0, "m")
+    with pytest.raises(ValueError, match=r"x must lie between 14\.5° and 30°"):
+        parameters.angle_within("x", value, 14.5, 30.0)
+    with pytest.raises(ValueError, match="x must be finite"):
+        parameters.within("x", value, 1.0, math.inf)
+
+
+@pytest.mark.parametrize(
+    ("value", "error"), [(1, ValueError), (6, ValueError), (2.5, TypeError), (True, TypeError)]
+)
+def test_of_a_count_both_ends_are_told(value, error):
+    with pytest.raises(error, match=r"n must be an integer from 2 to 5, got"):
+        parameters.integer_within("n", value, 2, 5)
+
+
 def test_angle_in_degrees_is_named():
     with pytest.raises(ValueError, match=r"pressure_angle .*14\.5° and 30°.*25\.0.*looks like degrees"):
         parameters.angle_within("pressure_angle", 25.0, 14.5, 30.0)
