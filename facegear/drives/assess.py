@@ -115,7 +115,7 @@ def assess(
     found = _Found(file, tolerance, most_steps, tell or (lambda words: None))
     with Crew(jobs) as crew:
         found.begin(crew)
-        for name, result in crew.results():
+        for name, result in crew.results(found.at_work):
             found.take(crew, name, result)
     return found.assessment()
 
@@ -177,6 +177,22 @@ class _Found:
     def _add_worst(self, crew: Crew, name: str, find: Callable[..., WorstCase], model: Any) -> None:
         size = float(len(model.coordinates))
         crew.add(("worst", name), size, _at_worst, find, model, self.speeds, self.file.tolerances)
+
+    def at_work(self, names: Sequence[tuple[str, Any]]) -> None:
+        """Say what is being computed."""
+        words: dict[str, Callable[[Any], str]] = {
+            "case": lambda number: self.cases[number].name,
+            "teeth": lambda which: self.others[which].name,
+            "torsion": lambda name: f"torsion, {name}",
+            "worst": lambda name: f"values in tolerances, {name}",
+        }
+        others = {
+            "response": "response in torsion",
+            "disk": "dynamic load of the disk",
+            "change": "changes that may help",
+        }
+        told_of = [words[kind](which) if kind in words else others[kind] for kind, which in names]
+        self.say(f"at work: {'; '.join(told_of)}")
 
     def take(self, crew: Crew, name: Any, result: Any) -> None:
         """Keep a result, and add what it brings along."""

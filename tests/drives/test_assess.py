@@ -511,3 +511,13 @@ def test_of_play_and_a_damaged_tooth_it_says_who_has_them():
     both = replace(file, play=object(), cracked=object())
     words = assessment(outcome("Tregold", DEAD, RIGID), file=both).not_varied
     assert "in their play and the damaged tooth see `facegear report`" in words
+
+
+def test_what_is_at_work_is_told_in_words():
+    said = []
+    found = _Found(CASE_1, 0.02, 1, said.append)
+    found.at_work([("case", 0), ("torsion", "Tregold, arm as printed"), ("worst", TORSION), ("disk", (0, 0))])
+    assert said == [
+        f"at work: {found.cases[0].name}; torsion, Tregold, arm as printed; values in tolerances, torsion; "
+        "dynamic load of the disk"
+    ]
