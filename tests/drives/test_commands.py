@@ -185,7 +185,11 @@ def test_a_map_in_three_kinds_of_files(here, capsys):
         ("--from 2 --to 1", "from and to must ascend"),
         (
             "--parameter bore_radius_mm --from 10 --to 500",
-            "with bore_radius_mm = 10 mm: body.bore_radius_mm must lie in [11.5",
+            "with bore_radius_mm = 10 mm: body.bore_radius_mm must lie in [11.5969, 188.433] in mm, got 10 mm",
+        ),
+        (
+            "--parameter bore_radius_mm --from 12 --to 200",
+            "with bore_radius_mm = 200 mm: body.bore_radius_mm must lie in [11.5969, 188.433] in mm, got 200 mm",
         ),
         (
             "--parameter module_mm --from 0.2 --to 9",
