@@ -16,7 +16,12 @@ from facegear.support.parameters import rpm
 def model_columns(table: xr.Dataset) -> dict[str, list[object]]:
     """List models row by row, from :func:`facegear.drives.assessment_table.model_table`."""
     names = ("motion", "contact", "force", "teeth", *map(str, table.data_vars), "fastest", "unstable_rpm")
-    return {name: table[name].values.tolist() for name in names}
+    in_table = {
+        "largest_growth": ("largest_growth_per_s", table["largest_growth"].values),
+        "fastest_speed": ("fastest_speed_rpm", rpm(table["fastest_speed"].values)),
+    }
+    columns = (in_table.get(name, (name, table[name].values)) for name in names)
+    return {heading: values.tolist() for heading, values in columns}
 
 
 def corner_columns(worst: Mapping[str, WorstCase]) -> dict[str, list[object]]:

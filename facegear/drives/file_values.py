@@ -174,7 +174,7 @@ def checked_value(path: str, key: Key, value: Any) -> Any:
         return tuple(key.to_si(_number(f"{path}[{i}]", key, entry)) for i, entry in enumerate(value))
     if key.kind == "integer":
         number = isinstance(value, int) and not isinstance(value, bool)
-        if not (number and (key.lowest <= value <= key.highest or (key.or_zero and value == 0))):
+        if not (number and key.allows(value)):
             error = ValueError if number else TypeError
             raise error(f"{path} must be {key.valid_entry}, got {_shown(value)}{_text_hint(value)}")
         return int(value)

@@ -103,6 +103,10 @@ class Key:
         """Name of the package's own parameter."""
         return self.quantity or _UNIT_IN_NAME.sub("", self.name)
 
+    def allows(self, value: float) -> bool:
+        """Whether a number is valid, in the file's unit."""
+        return self.lowest <= value <= self.highest or (self.or_zero and value == 0)
+
     def to_si(self, value: float) -> float:
         """Value in SI of a value in the file."""
         return OVER_SI[self.unit] / value if self.unit in OVER_SI else value / PER_SI.get(self.unit, 1.0)

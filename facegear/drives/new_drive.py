@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from facegear.drives.drive_file import DriveFileError, parse_drive
 from facegear.drives.drive_keys import SECTIONS
 from facegear.drives.drive_text import drive_text
+from facegear.drives.examples import example_text
 from facegear.drives.file_values import checked_value
 from facegear.drives.keys import Key
 from facegear.support.plain_yaml import PlainYamlError, read_plain_yaml
@@ -66,17 +67,20 @@ def needed() -> Iterator[tuple[str, tuple[Key, ...]]]:
                     yield name, same
 
 
+def _lacking(content: Content) -> Iterator[tuple[str, tuple[Key, ...]]]:
+    """Quantities of which a content has no key."""
+    for section, same in needed():
+        if not any(key.name in content.get(section, {}) for key in same):
+            yield section, same
+
+
 def missing(content: Content) -> list[str]:
     """Keys that a content lacks, as ``"gears.module_mm or gears.diametral_pitch_per_inch"``."""
-    return [
-        " or ".join(f"{section}.{key.name}" for key in same)
-        for section, same in needed()
-        if not any(key.name in content.get(section, {}) for key in same)
-    ]
+    return [" or ".join(f"{section}.{key.name}" for key in same) for section, same in _lacking(content)]
 
 
 def completed(content: Content, ask: Callable[[str], str], tell: Callable[[str], object]) -> Content:
-    """Ask for what a drive file needs, until it can be used.
+    """Ask for what a drive file needs, until it can be used; what cannot be right beside what is known, at once again.
 
     Parameters
     ----------
@@ -92,26 +96,48 @@ def completed(content: Content, ask: Callable[[str], str], tell: Callable[[str],
     dict
     """
     content = {name: dict(value) if isinstance(value, dict) else value for name, value in content.items()}
-    for section, same in needed():
-        if not any(key.name in content.get(section, {}) for key in same):
-            _ask_for(content, section, same[0], ask, tell)
     while True:
-        try:
-            parse_drive(drive_text(content), "together")
-        except DriveFileError as problem:
-            tell(str(problem))
-            place = _named(str(problem))
-            if place is None:
-                raise
+        unknown = [(section, same[0]) for section, same in _lacking(content)]
+        problem = _problem(content, unknown)
+        place = problem and _named(problem)
+        if problem and place and _is_of_what_is_known(problem, place, unknown):
+            tell(problem)
             _ask_for(content, *place, ask, tell)
+        elif unknown:
+            _ask_for(content, *unknown[0], ask, tell)
+        elif problem:
+            raise DriveFileError(problem)
         else:
             return content
+
+
+def _problem(content: Content, unknown: Sequence[tuple[str, Key]]) -> str:
+    """Say what is wrong with a content, with values of an example for what is unknown; nothing if it can be used."""
+    whole = {name: dict(value) if isinstance(value, dict) else value for name, value in content.items()}
+    usual = read_plain_yaml(example_text("case_1"))
+    for section, key in unknown:
+        whole.setdefault(section, {})[key.name] = usual[section][key.name]
+    try:
+        parse_drive(drive_text(whole), "together")
+    except DriveFileError as problem:
+        return str(problem)
+    return ""
+
+
+def _is_of_what_is_known(problem: str, place: tuple[str, Key], unknown: Sequence[tuple[str, Key]]) -> bool:
+    """Whether a mistake remains whatever is answered next: it names no key that is unknown, nor follows one."""
+    order = [(section, key.name) for section, key in all_keys()]
+    at = order.index((place[0], place[1].name))
+    return not any(
+        f"{section}.{key.name}" in problem or order.index((section, key.name)) < at
+        for section, key in unknown
+    )
 
 
 def _ask_for(
     content: Content, section: str, key: Key, ask: Callable[[str], str], tell: Callable[[str], object]
 ) -> None:
-    """Ask for one value until it is valid by itself."""
+    """Ask for one value until it is valid by itself; it stands for what says the same in another unit."""
     while True:
         typed = ask(f"{section}.{key.name}: {key.plain_meaning} ({key.valid})? ")
         value = value_in(typed, key)
@@ -121,7 +147,12 @@ def _ask_for(
         except (TypeError, ValueError) as problem:
             tell(str(problem))
         else:
-            content.setdefault(section, {})[key.name] = value
+            others = {
+                name: known
+                for name, known in content.get(section, {}).items()
+                if name not in {same.name for same in SECTIONS[section].keys if same.si_name == key.si_name}
+            }
+            content[section] = {**others, key.name: value}
             return
 
 

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from facegear.drives.drive_keys import SECTIONS
 from facegear.drives.file_values import FileValues
-from facegear.drives.keys import OVER_SI, PER_SI, Key
+from facegear.drives.keys import OVER_SI, Key
 from facegear.support.parameters import rpm
 
 T = TypeVar("T")
@@ -80,7 +80,9 @@ def _in_rpm(found: re.Match[str]) -> str:
 def _in_units_of_the_file(found: re.Match[str]) -> str:
     """Give a value out of its range, and the range, the name and unit of its key, if a model's value has one."""
     if found["unit"] == "rad/s" and found["name"] == "speed":
-        return _ranged("the speed of the face gear", found, PER_SI["rpm"], "rpm")
+        # Models have standstill, too; nothing that is asked for in rpm does.
+        high, got = (f"{float(rpm(float(found[which]))):.6g} rpm" for which in ("high", "got"))
+        return f"the speed of the face gear must be greater than 0 and at most {high}, got {got}"
     if (known := _KEYS.get(found["name"])) is None:
         return found[0]
     section, key = known

@@ -17,6 +17,7 @@ from facegear.drives.keys import MOST_CELLS, OVER_SI, Key
 from facegear.drives.refusals import told
 from facegear.drives.verdict import driven
 from facegear.floquet.models import Model, replace_parameter, system_at, value_of
+from facegear.maps.parallel import parts_of
 from facegear.mechanics.edge_stiffness import Following
 from facegear.support import labelled
 from facegear.support.parameters import finite, integer_within, rad_per_s, rpm
@@ -169,8 +170,7 @@ def sweep(
     own = chosen.from_si(value_of(model, chosen.si_name))
     low = max(_HALF * own, chosen.lowest) if lowest is None else finite("from", lowest)
     high = min((1.0 + _HALF) * own, chosen.highest) if highest is None else finite("to", highest)
-    lowest_valid = low >= chosen.lowest or (chosen.or_zero and low == 0.0)
-    if not (lowest_valid and low < high <= chosen.highest):
+    if not (low < high and chosen.allows(low) and chosen.allows(high)):
         raise ValueError(
             f"from and to must ascend and be {chosen.valid_entry} for {key}, got {low:g} to {high:g}"
         )
@@ -189,13 +189,20 @@ def sweep(
 
 
 def _require_models(model: Model, key: Key, values: Sequence[float], speed: float) -> None:
-    """Refuse first and last value where there is no such model, before anything is computed."""
-    for value in (values[0], values[-1]):
+    """Refuse values at which there is no such model, or that change nothing of it, before anything is computed."""
+    systems = []
+    # The second, too: what is a phase is the same again at the last.
+    for value in (values[0], values[1], values[-1]):
         try:
-            system_at(replace_parameter(model, key.si_name, value), speed)
+            systems.append(system_at(replace_parameter(model, key.si_name, value), speed))
         except ValueError as problem:
             shown = f"{key.name} = {key.from_si(value):.6g} {key.unit}".rstrip()
             raise ValueError(f"with {shown}: {told(problem)}") from problem
+    first, *others = (list(parts_of(system)) for system in systems)
+    if all(len(first) == len(other) and all(map(np.array_equal, first, other)) for other in others):
+        raise ValueError(
+            f"parameter must be one that changes stability, got {key.name!r}: the model is the same at all its values"
+        )
 
 
 def columns(found: Sweep) -> dict[str, list[float]]:

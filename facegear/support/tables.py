@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import re
 import unicodedata
 from collections.abc import Mapping, Sequence
@@ -20,7 +21,8 @@ def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
     Parameters
     ----------
     columns : mapping of str to sequence
-        Heading with its unit to values; all of one length. Numbers are written to twelve digits. A heading or text
+        Heading with its unit to values; all of one length. Numbers are written to twelve digits, NaN as an
+        empty cell. A heading or text
         that a spreadsheet would take for a formula, see :func:`defused`, gets an apostrophe before it.
     path : str or Path
         The file; its folder is made.
@@ -46,7 +48,7 @@ def write_table(columns: Mapping[str, Sequence[Any]], path: str | Path) -> Path:
 
 def _cell(value: Any) -> Any:
     if isinstance(value, float | np.floating):
-        return f"{value:.12g}"
+        return "" if math.isnan(value) else f"{value:.12g}"
     return defused(value) if isinstance(value, str) else value
 
 

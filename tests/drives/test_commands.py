@@ -105,8 +105,9 @@ def test_what_a_new_file_lacks_is_named_by_its_flags(here, capsys, monkeypatch):
 
 
 def test_on_a_terminal_it_asks_until_answers_can_be_used(here, capsys, monkeypatch):
-    # Too few teeth for the gear, a comma, a bore that is too large, which turns up with all, then what is right.
+    # Pointed teeth, too few for the gear, a comma, a bore that is too large, each asked for again at once.
     answers = [
+        "11",
         "26",
         "20",
         "130",
@@ -114,6 +115,7 @@ def test_on_a_terminal_it_asks_until_answers_can_be_used(here, capsys, monkeypat
         "3.175",
         "0.03",
         "400",
+        "50",
         "1",
         "3",
         "1",
@@ -122,7 +124,6 @@ def test_on_a_terminal_it_asks_until_answers_can_be_used(here, capsys, monkeypat
         "1000",
         "447",
         "5000",
-        "50",
     ]
     monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
     monkeypatch.setattr(commands, "ask", lambda question: asked.append(question) or answers.pop(0))
@@ -137,10 +138,18 @@ def test_on_a_terminal_it_asks_until_answers_can_be_used(here, capsys, monkeypat
         "operation.highest_speed_rpm must be greater than operation.lowest_speed_rpm = 100, got 90\n" in err
     )
     assert "body.bore_radius_mm must lie between" in err
-    assert [question.partition(":")[0] for question in asked][:3] == [
+    assert "gears.pinion_teeth=11 is too few" in err
+    assert [question.partition(":")[0] for question in asked][:10] == [
+        "gears.pinion_teeth",
         "gears.pinion_teeth",
         "gears.gear_teeth",
         "gears.gear_teeth",
+        "gears.module_mm",
+        "gears.module_mm",
+        "body.thickness_ratio",
+        "body.bore_radius_mm",
+        "body.bore_radius_mm",
+        "pinions.stiffness",
     ]
     assert (read_drive_file("my.yaml").name, read_drive_file("my.yaml").drive.gear_teeth) == ("Mine", 130)
 
@@ -185,7 +194,11 @@ def test_a_map_in_three_kinds_of_files(here, capsys):
         ("--from 2 --to 1", "from and to must ascend"),
         (
             "--parameter bore_radius_mm --from 10 --to 500",
-            "with bore_radius_mm = 10 mm: body.bore_radius_mm must lie in [11.5",
+            "with bore_radius_mm = 10 mm: body.bore_radius_mm must lie in [11.5969, 188.433] in mm, got 10 mm",
+        ),
+        (
+            "--parameter bore_radius_mm --from 12 --to 200",
+            "with bore_radius_mm = 200 mm: body.bore_radius_mm must lie in [11.5969, 188.433] in mm, got 200 mm",
         ),
         (
             "--parameter module_mm --from 0.2 --to 9",
@@ -226,3 +239,26 @@ def test_examples_are_listed_and_printed(capsys):
     assert capsys.readouterr().out == CASE_1
     assert main(["examples", "--schema"]) == 0
     assert json.loads(capsys.readouterr().out) == schema()
+
+
+def test_what_flags_gave_is_not_blamed_for_what_is_not_known_yet(here, capsys, monkeypatch):
+    """A bore of 500 mm is too large for the gear of any example, and right for this one."""
+    answers = ["26", "130", "16", "0.03", "1", "3", "1", "20", "200", "447", "5000"]
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(commands, "ask", lambda _: answers.pop(0))
+    assert main(["new", "my.yaml", "--bore-radius-mm", "500"]) == 0
+    assert not answers
+    assert capsys.readouterr().err == ""
+    assert read_drive_file("my.yaml").transverse.gear.body.bore_radius == pytest.approx(0.5)
+
+
+def test_an_answer_stands_for_the_same_in_two_units(here, capsys, monkeypatch):
+    answers = ["3.175"]
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(commands, "ask", lambda _: answers.pop(0))
+    assert main(["new", "my.yaml", *FLAGS, "--diametral-pitch-per-inch", "9"]) == 0
+    assert (
+        "gears.module_mm = 3.175 and gears.diametral_pitch_per_inch = 9 say the same"
+        in capsys.readouterr().err
+    )
+    assert read_drive_file("my.yaml").drive.module == 3.175e-3

@@ -56,7 +56,10 @@ def test_a_range_is_told_in_the_units_of_the_file(key):
 
 def test_speeds_are_told_in_rpm():
     error = raised(lambda: within("speed", 10.0, 0.0, 6.0, "rad/s", "rpm?"))
-    assert told(error) == "the speed of the face gear must lie in [0, 57.2958] in rpm, got 95.493 rpm"
+    assert (
+        told(error)
+        == "the speed of the face gear must be greater than 0 and at most 57.2958 rpm, got 95.493 rpm"
+    )
     assert told(ValueError("lost near 10 rad/s, between 1 and 6 rad/s")) == (
         "lost near 95.493 rpm, between 9.5493 and 57.2958 rpm"
     )

@@ -75,6 +75,16 @@ def test_nothing_of_a_number_that_may_be_zero_is_swept_too():
         ({"lowest": 2.0, "highest": 1.0}, "from and to must ascend"),
         ({"lowest": -1.0}, "from and to must ascend and be 0, or a number from 1e-06 to 1000 for stiffness"),
         ({"speeds_rpm": (500.0, 400.0)}, "speeds must be greater than 0 and ascend, got 500 to 400"),
+        # Zero is valid, and so is 1e-6: what lies between is not.
+        ({"lowest": 0.0, "highest": 1e-7}, "must .* be 0, or a number from 1e-06 to 1000 .*, got 0 to 1e-07"),
+        (
+            {"speeds_rpm": (1.0, 1e5)},
+            "face gear must be greater than 0 and at most 41589.6 rpm, got 100000 rpm",
+        ),
+        (
+            {"key": "yield_strength_MPa"},
+            "parameter must be one that changes stability, got 'yield_strength_MPa'",
+        ),
         ({"contact": "loaded"}, "contact must be tregold or geometric for these teeth, got 'loaded'"),
         ({"cells": 1}, "cells must be an integer from 2 to 1000, got 1"),
         ({"cells": 100_000}, "cells must be an integer from 2 to 1000, got 100000"),
@@ -125,3 +135,11 @@ def test_a_gearbox_has_the_contact_that_is_asked_for():
         ).chart
         found[contact] = chart.growth_rate.values
     assert not np.allclose(found["tregold"], found["geometric"])
+
+
+def test_a_phase_is_swept_although_it_is_the_same_at_both_ends():
+    file = parse_drive(example_text("both_faces"))
+    found = sweep(file, "clocking", lowest=-0.5, highest=0.5, cells=3, speeds_rpm=(500.0, 600.0))
+    growth = found.chart["growth_rate"].values
+    np.testing.assert_allclose(growth[0], growth[-1], rtol=1e-6, atol=1e-6)
+    assert np.abs(growth[1] - growth[0]).max() > 1e-3

@@ -37,6 +37,11 @@ def test_tables(tmp_path):
     assert [p.name for p in path.parent.iterdir()] == ["table.csv"]
 
 
+def test_a_number_that_there_is_not_is_an_empty_cell(tmp_path):
+    path = write_table({"name": ["a", "b"], "value_mm": [float("nan"), 2.5]}, tmp_path / "table.csv")
+    assert path.read_text(encoding="utf-8-sig").splitlines() == ["name,value_mm", "a,", "b,2.5"]
+
+
 @pytest.mark.parametrize("text", HOSTILE)
 def test_no_cell_is_a_formula(tmp_path, text):
     path = write_table({"name": [text], text: [1.0]}, tmp_path / "table.csv")
