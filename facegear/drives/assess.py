@@ -19,8 +19,8 @@ from facegear.drives.assessment import Assessment
 from facegear.drives.basis import (
     SettledTongues,
     found_around,
-    looked_at,
     settled_tongues,
+    traced,
     unstable_share,
     with_basis,
     within,
@@ -164,7 +164,7 @@ class _Found:
     def _first(self) -> tuple[tuple[Sequence[Tongue], ...], str]:
         """Tongues of the file's own model, if they can be computed, and the first verdict in words."""
         try:
-            found = found_around(self.cases[0].model, looked_at(self.judged))
+            found = found_around(self.cases[0].model, self.judged)
         except ArithmeticError as error:
             return (), f"it could not be computed ({told(error)})"
         share = unstable_share(within(self.cases[0].model, found, self.speeds), self.speeds)
@@ -371,7 +371,7 @@ def _change(file: DriveFile, unstable: Outcome, speeds: tuple[float, float]) -> 
     """Say which change helps an unstable model most, at all speeds that the drive may come to."""
     model, found = unstable.variant.model, unstable.tongues
     if speeds != file.requirements.speeds:
-        found = found_around(model, speeds)
+        found = traced(model, speeds)
     effects = effects_of_changes(model, found, speeds, describe(file))
     low, high = (f"{rpm(speed):.4g}" for speed in speeds)
     name = f"{unstable.variant.name}; from {low} to {high} rpm"

@@ -5,7 +5,7 @@ borders of tongues move by a percent or two with more modes, and narrow tongues 
 drive fixed, bearings in N/m and not in parts of a stiffness that changes with the basis, and says how far it went.
 
 A narrow range of speed has all of a tongue in it or nothing, and two bases that agree there say little: tongues are
-looked for around it, and one that might come in from outside, or leave it, asks for a larger basis.
+looked for around it, as around any range without one, and one that might come in, or leave it, asks for a larger basis.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ from facegear.support.types import FloatArray
 
 # Ratio of the highest and the lowest speed looked at, at least.
 _WIDE = 1.5
+# Part by which a wide range without a tongue is looked at beyond its ends.
+_BESIDE = 1.1
 # A border outside the range may come nearer by so many times what it moved from one basis to the next.
 _ONWARD = 2.0
 # Growth in a period from which a speed counts as unstable in a basis whose multipliers are known less well.
@@ -76,23 +78,17 @@ def with_basis(model: FaceGears, nodal_circles: int, nodal_diameters: int) -> Fa
     return model.with_gear(replace(gear, body=body, load=load, force=force))
 
 
-def looked_at(speeds: tuple[float, float]) -> tuple[float, float]:
-    """Return the range of speed in which tongues are looked for to judge a range: itself, or wider if that is narrow.
-
-    Examples
-    --------
-    >>> looked_at((10.0, 100.0))
-    (10.0, 100.0)
-    >>> low, high = looked_at((99.0, 101.0))
-    >>> round(high / low, 6), round(low * high, 6)
-    (1.5, 9999.0)
-    """
+def found_around(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
+    """Trace tongues in a range, and beside it where the range is narrow or none is in it."""
     low, high = speeds
     further = math.sqrt(max(1.0, _WIDE * low / high))
-    return low / further, high * further
+    found = traced(model, (low / further, high * further))
+    if found or further > 1.0:
+        return found
+    return (*traced(model, (low / _BESIDE, low)), *traced(model, (high, high * _BESIDE)))
 
 
-def found_around(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
+def traced(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
     """Trace tongues in a range; in a basis so large that multipliers are known less well, those that grow faster."""
     try:
         return tongues(model, speeds, progress=False)
@@ -221,7 +217,7 @@ def settled_tongues(
     speeds : tuple of float
         Lowest and highest speed [rad/s].
     known : sequence of Tongue, optional
-        Tongues in the first basis, where they have been traced already: in the range of :func:`looked_at`.
+        Tongues in the first basis, where they have been traced already, by :func:`found_around`.
     around : tuple of float, optional
         Range in which they must stand still [rad/s], which has the other in it; that itself, if left out.
     tolerance : float
@@ -243,13 +239,12 @@ def settled_tongues(
     tolerance = checked_within("tolerance", tolerance, 1e-6, 0.5)
     integer_at_least("most_steps", most_steps, 1)
     judged = speeds if around is None else around
-    wide = looked_at(judged)
     steps: list[BasisStep] = []
     before: tuple[Tongue, ...] = ()
     shown = model
     for circles, diameters in _bases(model.gear.body, most_steps):
         shown = with_basis(model, circles, diameters) if steps else model
-        found = tuple(known) if known is not None and not steps else found_around(shown, wide)
+        found = tuple(known) if known is not None and not steps else found_around(shown, judged)
         here = within(shown, found, speeds)
         moved = disagreement(steps[-1].tongues, here, speeds) if steps else math.nan
         steps.append(BasisStep(circles, diameters, here, moved))

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations, count, product
 from typing import Any
 
-from facegear.drives.basis import found_around
+from facegear.drives.basis import traced
 from facegear.drives.intervals import Intervals, cut, gaps, united
 from facegear.maps.tracing import Tongue, search_seconds
 
@@ -317,7 +317,7 @@ class BoxSearch:
             return known[1]
         model = self.at(factors)
         self._seconds += search_seconds(model, around)
-        found = found_around(model, around)
+        found = traced(model, around)
         self._traced[factors] = around, found
         return found
 

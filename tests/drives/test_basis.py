@@ -151,6 +151,25 @@ class TestSettledTongues:
         ):
             assert basis._stands_still(before, found, narrow, 0.02) is stands
 
+    def test_a_wide_range_without_a_tongue_is_looked_at_beyond_its_ends(self, monkeypatch):
+        asked = []
+
+        def traced(model, speeds):
+            asked.append(speeds)
+            return (interval(109.0, 111.0),) if speeds[0] == 100.0 else ()
+
+        monkeypatch.setattr(basis, "traced", traced)
+        assert basis.found_around(None, (10.0, 100.0)) == (interval(109.0, 111.0),)
+        assert asked == [
+            (10.0, 100.0),
+            (pytest.approx(10.0 / 1.1), 10.0),
+            (100.0, pytest.approx(110.0)),
+        ]
+        asked.clear()
+        basis.found_around(None, (99.0, 101.0))
+        ((low, high),) = asked
+        assert (high / low, low * high) == (pytest.approx(1.5), pytest.approx(99.0 * 101.0))
+
     def test_growth_that_moves_is_told(self):
         steps = tuple(
             BasisStep(1, n, (replace(interval(1, 2), growth_rate=rate),), 0.0)
