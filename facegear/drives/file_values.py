@@ -18,6 +18,8 @@ from facegear.support.parameters import within
 
 # Factors by which people miss a unit, after that to SI.
 _FACTORS = (1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9)
+# Nobody writes their thousandth parts.
+_WITHOUT_PREFIX = ("°", "%", "rpm", "hp", "1/in")
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*", re.ASCII)
 _WITH_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*[^\d\s.,:eE-].*", re.ASCII)
 
@@ -208,7 +210,8 @@ def _unit_hint(path: str, key: Key, value: float) -> str:
     if key.hint:
         return key.hint
     hints = [f"a ratio, not {key.no_unit}?"] if key.no_unit and value > key.highest else []
-    factors = (key.to_si(1.0) ** -1, *_FACTORS) if key.unit else (1e-3,) if key.no_unit else ()
+    prefixes = () if key.unit in _WITHOUT_PREFIX else _FACTORS
+    factors = (key.to_si(1.0) ** -1, *prefixes) if key.unit else (1e-3,) if key.no_unit else ()
     for factor in factors:
         if factor != 1.0 and key.lowest <= value * factor <= key.highest:
             unit = f", in {key.unit}" if key.unit else ""
