@@ -66,7 +66,7 @@ twins: environment ## write what computations take from the derivations anew
 	@$(PYTHON) tools/write_twins.py
 
 explorer: environment ## open the live explorer in a browser (Voilà on this machine)
-	@$(PYTHON) -m voila notebooks/explorer.ipynb
+	@$(PYTHON) -m voila notebooks/explorer.ipynb --preheat_kernel=True --VoilaKernelManager.fill_delay=5
 
 bench: environment ## measure the performance tables, beside other packages (group `peers` of pyproject.toml)
 	@UV_PROJECT_ENVIRONMENT=.venv $(PYTHON) -m uv sync --quiet --locked --inexact --python $(PYTHON) --group peers

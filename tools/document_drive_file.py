@@ -8,7 +8,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from facegear.drives.drive_schema import documentation, schema  # noqa: E402
-from tools.pages import with_powers_of_ten  # noqa: E402
+from tools.pages import in_readers_digits  # noqa: E402
 
 SCHEMA = ROOT / "data" / "drive.schema.json"
 PAGE = ROOT / "book" / "drive_file.md"
@@ -24,7 +24,7 @@ def page_text(page: str) -> str:
     """Return the page with its tables renewed."""
     before, rest = page.split(MARKS[0], 1)
     _, after = rest.split(MARKS[1], 1)
-    return f"{before}{MARKS[0]}\n{with_powers_of_ten(documentation())}\n{MARKS[1]}{after}"
+    return f"{before}{MARKS[0]}\n{in_readers_digits(documentation())}\n{MARKS[1]}{after}"
 
 
 if __name__ == "__main__":

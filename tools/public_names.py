@@ -4,13 +4,17 @@ A docstring names its neighbours as the code calls them, `with_method` or `faceg
 One that is public becomes a link to the page; one that exists and is not public stays code without a link; one that
 does not exist is left to Sphinx, which complains.
 
+A public name that is a value has its docstring below it, in the module that defines it, where Sphinx does not look.
+
 The types of parameters and results are links too, through numpydoc: public names, and what `book/inventories` has
 of other libraries. Words such as `float` that everybody knows are not.
 """
 
+import ast
 import importlib
 import re
 from dataclasses import fields, is_dataclass
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -20,6 +24,7 @@ from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.environment import BuildEnvironment
+from sphinx.pycode import ModuleAnalyzer
 from sphinx.util.logging import get_node_location
 
 import facegear
@@ -63,6 +68,21 @@ def public_name(thing: Any) -> str:
     return next((name for name in facegear.__all__ if getattr(facegear, name) is thing), "")
 
 
+def below(name: str) -> list[str]:
+    """Return the lines that describe a public value below its definition, as `facegear/__init__.pyi` has its place."""
+    for node in ast.parse(Path(facegear.__file__).with_suffix(".pyi").read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ImportFrom) and any(alias.name == name for alias in node.names):
+            described = ModuleAnalyzer.for_module(f"facegear.{node.module}").find_attr_docs()
+            return described.get(("", name), [])
+    return []
+
+
+def describe(_app: Sphinx, what: str, name: str, _thing: object, _options: object, lines: list[str]) -> None:
+    """Answer autodoc's event of a docstring: that of a value is not that of its class."""
+    if what == "data" and (own := below(name.removeprefix("facegear."))):
+        lines[:] = own
+
+
 def resolve(
     app: Sphinx, env: BuildEnvironment, node: pending_xref, contnode: nodes.TextElement
 ) -> nodes.Element | None:
@@ -93,5 +113,6 @@ def link_types(app: Sphinx, config: Config) -> None:
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx what is here."""
     app.connect("missing-reference", resolve)
+    app.connect("autodoc-process-docstring", describe, priority=100)  # before numpydoc does
     app.connect("config-inited", link_types, priority=100)  # before numpydoc looks at them
     return {"parallel_read_safe": True, "parallel_write_safe": True}

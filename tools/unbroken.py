@@ -1,7 +1,7 @@
 """Extension of Sphinx: what belongs together is not parted where a line ends.
 
-That is the number of an equation of the dissertation, as (3-20); a number and its per cent; a formula and the stop
-after it.
+That is the number of an equation of the dissertation, as (3-20) or each of (3-9 to 3-11); a number and its per cent; a
+formula and the stop after it.
 """
 
 import re
@@ -11,7 +11,10 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
-NUMBER = re.compile(r"(\(\d{1,2}-\d{1,2}[a-z]?\))")
+# In parentheses of its own; or in some that have nothing but numbers and words: (7-5, 7-6), (section 2.1, 2-10).
+NUMBER = re.compile(
+    r"(\(\d{1,2}-\d{1,2}[a-z]?\)|(?<![\w.+/-])[2-8]-\d{1,2}[a-z]?(?=(?:(?: to |, | and )[^()]*)?\)))"
+)
 PERCENT = re.compile(r"(?:(?<=\d)|^)[ \n]%")
 CLOSING = re.compile(r"^[.,;:!?)\]]+")
 # In these a text is not what a reader reads as running text, or is used again elsewhere.

@@ -5,6 +5,7 @@
   const LONG_IN_TABLE = 23;
   const PARTS = /(?<=[._/:=(])(?=[^\s._/:=()])|(?<=[a-z]{3})(?=[A-Z][a-z]{2})/;
   const WORDS = 20; // letters in a cell of a table from which on it is words
+  const LINES = 36; // letters in a cell of the first column from which on it is lines of words
 
   function breakable(text) {
     const long = text.parentElement.closest("table") ? LONG_IN_TABLE : LONG;
@@ -16,6 +17,9 @@
   document.addEventListener("DOMContentLoaded", function () {
     for (const cell of document.querySelectorAll(".bd-article td:nth-child(2)")) {
       cell.classList.toggle("of-words", cell.textContent.trim().length > WORDS);
+    }
+    for (const cell of document.querySelectorAll(".bd-article td:first-child")) {
+      cell.classList.toggle("of-lines", cell.textContent.trim().length > LINES);
     }
     const names = ":is(:not(pre) > code, a.reference.external, dl.py dt, td > p)";
     for (const name of document.querySelectorAll(`.bd-article ${names}`)) {

@@ -31,7 +31,7 @@ def _table_row(*cells: str) -> str:
 def _found(row: LedgerRow) -> str:
     """Write what this run found with two digits more than are printed, so that the rounding shows."""
     if row.computed is None:
-        return "-"
+        return "–"
     if isinstance(row.computed, bool):
         return "holds" if row.computed else "does not hold"
     digits = max(0, -int(Decimal(row.printed.printed).as_tuple().exponent)) + 2
@@ -70,9 +70,8 @@ def remarks_as_markdown(rows: Sequence[LedgerRow]) -> str:
         if not isinstance(value.printed, bool):
             stated += f": {value.printed} {value.unit}".rstrip()
         why = f"{value.convention} {value.remark}".strip()
-        lines.append(
-            _table_row(value.where, stated, breakable(why), breakable(f"{value.how}: {_found(row)}"))
-        )
+        evidence = value.how if row.computed is None else f"{value.how}: {_found(row)}"
+        lines.append(_table_row(value.where, stated, breakable(why), breakable(evidence)))
     return "\n".join(lines)
 
 

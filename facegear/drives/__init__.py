@@ -11,8 +11,8 @@ and `report_files` write; `sweeps` are maps over any number of a file.
 
 A verdict for all that is open: `assess` asks all `variants` of a model, each an `outcome`, and for the `worst_case` in
 its tolerances, which `tolerance_cells` find, for an `assessment` over `intervals` of speed, in `growth_words`,
-`disk_response_words` and what `torsion_response` says, with arrays of `assessment_table` and `disk_response_table`,
-which `assessment_files` write, and `assessment_columns` as tables.
+`disk_response_words` and what `torsion_response` says, with arrays of `assessment_table`, `disk_response_table` and
+`response_peaks`, which `assessment_files` write, and `assessment_columns` as tables.
 
 The explorer: `studies`, `file_study`, `explore` and `cell` compute what it shows, `explorer` and `motion_explorer` draw
 it with a `map_figure`, a `cell_figure` and `widgets`, `live` serves it.

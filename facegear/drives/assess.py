@@ -16,7 +16,15 @@ import xarray as xr
 
 from facegear.design.changes import effects_of_changes
 from facegear.drives.assessment import Assessment
-from facegear.drives.basis import SettledTongues, settled_tongues, unstable_share, with_basis
+from facegear.drives.basis import (
+    SettledTongues,
+    found_around,
+    looked_at,
+    settled_tongues,
+    unstable_share,
+    with_basis,
+    within,
+)
 from facegear.drives.contacts import massless, torsional_under
 from facegear.drives.disk_response import RESPONSE_SPEEDS, disk_response
 from facegear.drives.drive_file import DriveFile
@@ -41,7 +49,7 @@ from facegear.maps.response_map import frequency_response
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pinions_on_disk import FaceGears
-from facegear.support.parameters import number_of_workers
+from facegear.support.parameters import number_of_workers, rpm
 from facegear.support.types import FloatArray
 
 _ARMS = {"printed": "arm as printed", "conjugate": "arm of conjugate teeth"}
@@ -107,7 +115,7 @@ def assess(
     found = _Found(file, tolerance, most_steps, tell or (lambda words: None))
     with Crew(jobs) as crew:
         found.begin(crew)
-        for name, result in crew.results():
+        for name, result in crew.results(found.at_work):
             found.take(crew, name, result)
     return found.assessment()
 
@@ -119,8 +127,9 @@ class _Found:
         self, file: DriveFile, tolerance: float, most_steps: int, say: Callable[[str], object]
     ) -> None:
         self.file, self.say, self.speeds = file, say, file.requirements.speeds
-        self.settings = (self.speeds, tolerance)
-        self.most_steps = most_steps
+        # Speeds that the drive may come to, and those where tongues are looked for that could come to these.
+        self.judged = file.tolerances.widened(self.speeds)
+        self.tolerance, self.most_steps = tolerance, most_steps
         self.contacts = plain_contacts(file)
         self.cases = [
             Variant(name, words, own_teeth(file), driven(file, force, with_own_teeth(file, contact)))
@@ -155,18 +164,35 @@ class _Found:
     def _first(self) -> tuple[tuple[Sequence[Tongue], ...], str]:
         """Tongues of the file's own model, if they can be computed, and the first verdict in words."""
         try:
-            found = tongues(self.cases[0].model, self.speeds, progress=False)
+            found = found_around(self.cases[0].model, looked_at(self.judged))
         except ArithmeticError as error:
             return (), f"it could not be computed ({told(error)})"
-        return (found,), f"unstable at {100 * unstable_share(found, self.speeds):.3g} % of the speeds"
+        share = unstable_share(within(self.cases[0].model, found, self.speeds), self.speeds)
+        return (found,), f"unstable at {100 * share:.3g} % of the speeds"
 
     def _add_case(self, crew: Crew, number: int, case: Variant, *known: Sequence[Tongue]) -> None:
-        work = (case.model, *self.settings, self.most_steps, *known)
+        work = (case.model, self.speeds, self.judged, self.tolerance, self.most_steps, *known)
         crew.add(("case", number), _CASES_FIRST, _tried, *work)
 
     def _add_worst(self, crew: Crew, name: str, find: Callable[..., WorstCase], model: Any) -> None:
         size = float(len(model.coordinates))
         crew.add(("worst", name), size, _at_worst, find, model, self.speeds, self.file.tolerances)
+
+    def at_work(self, names: Sequence[tuple[str, Any]]) -> None:
+        """Say what is being computed."""
+        words: dict[str, Callable[[Any], str]] = {
+            "case": lambda number: self.cases[number].name,
+            "teeth": lambda which: self.others[which].name,
+            "torsion": lambda name: f"torsion, {name}",
+            "worst": lambda name: f"values in tolerances, {name}",
+        }
+        others = {
+            "response": "response in torsion",
+            "disk": "dynamic load of the disk",
+            "change": "changes that may help",
+        }
+        told_of = [words[kind](which) if kind in words else others[kind] for kind, which in names]
+        self.say(f"at work: {'; '.join(told_of)}")
 
     def take(self, crew: Crew, name: Any, result: Any) -> None:
         """Keep a result, and add what it brings along."""
@@ -184,7 +210,9 @@ class _Found:
             failed, words = [f"{case.name}: {tried.reason}"], "could not be computed"
         else:
             self._keep(
-                crew, (number, 0), Outcome(replace(case, model=found.model), found.tongues, found.settled)
+                crew,
+                (number, 0),
+                Outcome(replace(case, model=found.model), found.tongues, found.settled, found.growth_moved),
             )
             # Where two bases agree for the file's teeth, the smaller is where the others begin, and that of tolerances.
             last = found.steps[-2:][0]
@@ -201,7 +229,8 @@ class _Found:
         for place, variant in enumerate(variants, 1):
             self.others[number, place] = variant
             size = float(len(variant.model.coordinates))
-            crew.add(("teeth", (number, place)), size, _tried, variant.model, *self.settings, bases)
+            work = (variant.model, self.speeds, self.speeds, self.tolerance, bases)
+            crew.add(("teeth", (number, place)), size, _tried, *work)
         done = sum(place == 0 for _, place in self.failed)
         self.say(f"case {done} of {len(self.cases)}: {words} ({case.name})")
         if done == len(self.cases):
@@ -213,7 +242,8 @@ class _Found:
             self.failed[which] = [f"{variant.name}: {tried.reason}"]
         else:
             here = replace(variant, model=tried.found.model)
-            self._keep(crew, which, Outcome(here, tried.found.tongues, tried.found.settled))
+            found = tried.found
+            self._keep(crew, which, Outcome(here, found.tongues, found.settled, found.growth_moved))
         done = sum(place > 0 for _, place in {**self.outcomes, **self.failed})
         self.say(f"other teeth {done} of {len(self.others)} known so far: {variant.name}")
 
@@ -236,7 +266,7 @@ class _Found:
         )
         if (unstable := next((outcome for outcome in own if outcome.tongues), None)) is not None:
             size = float(len(unstable.variant.model.coordinates))
-            crew.add(("change", ""), size, _change, self.file, unstable)
+            crew.add(("change", ""), size, _change, self.file, unstable, self.judged)
 
     def assessment(self) -> Assessment:
         """Put everything together, in an order that does not depend on what was done first."""
@@ -255,7 +285,9 @@ class _Found:
         change = self.found.get(("change", ""))
         if change is None:
             unstable = next((outcome for outcome in outcomes if outcome.tongues), None)
-            change = "" if unstable is None else _change(self.file, unstable)
+            change = "" if unstable is None else _change(self.file, unstable, self.judged)
+        if change and any(self.found["torsion", name] for name in self.torsion):
+            change += " In torsion no change was tried."
         return Assessment(
             file=self.file,
             outcomes=outcomes,
@@ -285,12 +317,15 @@ class _Tried(NamedTuple):
 def _tried(
     model: FaceGears,
     speeds: tuple[float, float],
+    judged: tuple[float, float],
     tolerance: float,
     most_steps: int,
     known: Sequence[Tongue] | None = None,
 ) -> _Tried:
     try:
-        found = settled_tongues(model, speeds, known, tolerance=tolerance, most_steps=most_steps)
+        found = settled_tongues(
+            model, speeds, known, around=judged, tolerance=tolerance, most_steps=most_steps
+        )
     except (ArithmeticError, ValueError) as error:
         return _Tried(None, told(error))
     return _Tried(found, "")
@@ -332,8 +367,12 @@ def _response(file: DriveFile, torsional: Any) -> tuple[xr.Dataset | None, str]:
         return None, told(error)
 
 
-def _change(file: DriveFile, unstable: Outcome) -> str:
-    """Say which change helps an unstable model most."""
-    speeds = file.requirements.speeds
-    effects = effects_of_changes(unstable.variant.model, unstable.tongues, speeds, describe(file))
-    return " ".join(best_change(unstable.variant.name, effects, unstable.tongues))
+def _change(file: DriveFile, unstable: Outcome, speeds: tuple[float, float]) -> str:
+    """Say which change helps an unstable model most, at all speeds that the drive may come to."""
+    model, found = unstable.variant.model, unstable.tongues
+    if speeds != file.requirements.speeds:
+        found = found_around(model, speeds)
+    effects = effects_of_changes(model, found, speeds, describe(file))
+    low, high = (f"{rpm(speed):.4g}" for speed in speeds)
+    name = f"{unstable.variant.name}; from {low} to {high} rpm"
+    return " ".join(best_change(name, effects, found))

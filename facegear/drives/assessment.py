@@ -272,13 +272,16 @@ class Assessment:
     def not_varied(self) -> str:
         """What no model includes."""
         count = len(self.file.transverse.gear.pinion_angles)
+        more = ["what becomes of motions once flanks part, in their play"] * (self.file.play is not None)
+        more += ["the damaged tooth"] * (self.file.cracked is not None)
+        there = f" For {listed(more)} see `facegear report`." if more else ""
         alone = f"the other {'pinion' if count == 2 else 'pinions'} in torsion, where there is one, "
         return (
             "Not included: tooth errors, the stiffness of the housing, the disk and the gearbox moving together, "
             f"{alone * (count > 1 and self.file.torsional is not None)}"
             "temperature; tolerances are those of the file's own contact and teeth, and of its own arm in torsion; "
             "the driving force is the same at all speeds, and speeds outside the range and its tolerance are not "
-            "looked at."
+            f"looked at.{there}"
         )
 
     def table(self) -> xr.Dataset:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -18,9 +19,10 @@ from facegear.drives.growth_words import told
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
 from facegear.drives.report_arrays import describe
-from facegear.drives.tolerance_cells import FINE, HALF, MOST
+from facegear.drives.tolerance_cells import FINE, HALF, MOST, Factors
 from facegear.drives.torsion_response import peaks_table, response_table
 from facegear.drives.variants import Variant
+from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
 from facegear.plotting import assessment as draw
 from facegear.support import labelled
@@ -35,6 +37,19 @@ _MOST_VALUES = 40
 # Headings of what grows fastest.
 _FASTEST = ("fastest", "growth [1/s]")
 _BASIS = "nodal circles, diameters"
+_WORDS = (
+    "Contact: Tregold, the contact ratio of contact at a point; true sweep, that of lines which cross the whole face; "
+    "under load, that of teeth which give way under it.",
+    "Driving force: it follows the rim as that bends, or keeps its direction in space.",
+    "Rate: frozen, dampers and masses feel how fast the disk moves at a place that stands still; total, how fast it "
+    "moves under the contact as that travels.",
+    "Load sharing of flexible teeth: centroid, one load at the mean contact point; equal, each pair the "
+    "same; length, each as its line is long, so that the mesh is as stiff as the lines are; length_share, each its "
+    "part of the length of all, so that the mesh is as stiff at all times.",
+    "(1+8)/1: natural motions 1 and 8, numbered by frequency, whose frequencies make up once the mesh frequency; "
+    "(8-1)/1: their difference does. mean 1: natural motion 1 grows by itself (flutter).",
+    "10/1: natural motion 10 in resonance with the first harmonic of the mesh.",
+)
 
 PAGE = "assessment.html"
 """Name of the page among the files of an assessment."""
@@ -46,16 +61,21 @@ FILES = (PAGE, *(f"{name}.nc" for name in _ARRAYS), *(f"{name}.csv" for name in 
 
 
 def sections(found: Assessment) -> tuple[Section, ...]:
-    """Sections of the page: verdict, models, tolerances, dynamic load, what was left out."""
-    return tuple(make(found) for make in (_verdict, _models, _tolerances, _dynamic_load, _left_out))
+    """Sections of the page: verdict, models, tolerances, dynamic load, what was left out, words."""
+    parts = tuple(make(found) for make in (_verdict, _models, _tolerances, _dynamic_load, _left_out))
+    return (*parts, Section("Words", (Listing(_WORDS),)))
 
 
 def _verdict(found: Assessment) -> Section:
     good = found.verdict == SAFE and not found.parting
+    # What decides stands out; the sentences after it are many.
+    first, dot, rest = found.headline.partition(". ")
     parts: list[Paragraph | Listing] = [
         Paragraph(f"{found.file.name}.", strong=True),
-        Paragraph(found.headline, "good" if good else "bad", strong=True),
+        Paragraph(first + dot, "good" if good else "bad", strong=True),
     ]
+    if rest:
+        parts.append(Paragraph(rest, "good" if good else "bad"))
     # Forced responses stand in their own section alone.
     said = [*found.over_tolerances, found.dynamic_load, found.change]
     parts.append(Listing(tuple(sentence for sentence in said if sentence)))
@@ -102,8 +122,14 @@ def _models(found: Assessment) -> Section:
         "Horizontal strips over speed, one for each model, green with red intervals; a last one in three colours",
     )
     names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
-    headings = (*names, *_FASTEST, _BASIS, "settled")
-    return Section("Models", (strips, Table(headings, _model_rows(found), "Models and what they come to")))
+    headings = (*names, *_FASTEST, _BASIS, "settled", "growth moved [%]")
+    words = Paragraph(
+        "Settled: the unstable speeds of two bases agree, and would if borders beside a narrow range came nearer by "
+        "twice as much as they moved. Growth rates are those of the basis that stands beside them; the last column "
+        "says by how much of itself the largest differs in the basis before."
+    )
+    table = Table(headings, _model_rows(found), "Models and what they come to")
+    return Section("Models", (strips, words, table))
 
 
 def _model_rows(found: Assessment) -> tuple[tuple[str, ...], ...]:
@@ -119,12 +145,16 @@ def _model_rows(found: Assessment) -> tuple[tuple[str, ...], ...]:
             *_what_grows(outcome.tongues, found.speeds),
             _basis_of(outcome.variant),
             "yes" if outcome.settled else "NO",
+            "" if math.isnan(outcome.growth_moved) else f"{100 * outcome.growth_moved:.2g}",
         )
         for outcome in order
     )
     wide = found.file.tolerances.widened(found.speeds)
+    motion = TORSION
+    if found.file.tolerances.speed:
+        motion += f", {rpm(wide[0]):.4g} to {rpm(wide[1]):.4g} rpm"
     torsion = (
-        (TORSION, name, "", "", *_what_grows(tongues, wide), "", "")
+        (motion, name, "", "", *_what_grows(tongues, wide), "", "", "")
         for name, tongues in found.torsion.items()
     )
     return (*disk, *torsion)
@@ -173,6 +203,7 @@ def _at_values(names: Sequence[str], found: Assessment, caption: str) -> Iterato
             name,
             *(f"{factor:.4g}" for factor in factors),
             ", ".join(f"{rpm(t.lower):.4g} to {rpm(t.upper):.4g}" for t in tongues) or "none",
+            _where(cases[name], factors),
             *_fastest(tongues),
         )
         for name, factors, tongues in points
@@ -183,8 +214,20 @@ def _at_values(names: Sequence[str], found: Assessment, caption: str) -> Iterato
             f"; of {len(points)} the {len(shown)} at which something grows fastest, all are in tolerances.csv"
         )
     factors = next(iter(cases.values())).factors
-    headings = ("model", *(f"{words}, times" for words in factors), "unstable [rpm]", *_FASTEST)
+    headings = (
+        "model",
+        *(f"{words}, times" for words in factors),
+        "unstable [rpm]",
+        "looked at [rpm]",
+        *_FASTEST,
+    )
     yield Table(headings, rows, caption)
+
+
+def _where(case: WorstCase, factors: Factors) -> str:
+    """Say in which part of the range some values were looked at."""
+    parts = case.looked_at.get(factors, (case.speeds,))
+    return "all" if parts == (case.speeds,) else told(parts).replace(" rpm", "")
 
 
 def _fastest(found: Sequence[Tongue]) -> tuple[str, str]:
@@ -245,9 +288,10 @@ def _of_the_disk(found: Assessment) -> Iterator[Paragraph | Picture | Table | Li
         for peak in _highest_peaks(each.data, 3 if each.settled else 2)
     )
     if rows:
+        caption = f"Highest resonances of the force of a mesh, at most {_PEAKS} of each model"
         forces = ("rms of what varies of the force [N]", "lowest less static [N]", "highest less static [N]")
         headings = ("model", "mode / harmonic of the mesh", "speed [rpm]", *forces)
-        yield Table((*headings, _BASIS, "settled"), rows, "Highest resonances of the force of a mesh")
+        yield Table((*headings, _BASIS, "settled"), rows, caption)
 
 
 def _highest_peaks(data: xr.Dataset, digits: int) -> Iterator[tuple[str, ...]]:

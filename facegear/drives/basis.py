@@ -3,6 +3,9 @@
 A force at one point calls on all modes, and a basis as small as the printed one, M = 1 and N = 3, is too stiff there:
 borders of tongues move by a percent or two with more modes, and narrow tongues come and go. What stands here holds a
 drive fixed, bearings in N/m and not in parts of a stiffness that changes with the basis, and says how far it went.
+
+A narrow range of speed has all of a tongue in it or nothing, and two bases that agree there say little: tongues are
+looked for around it, and one that might come in from outside, or leave it, asks for a larger basis.
 """
 
 from __future__ import annotations
@@ -13,14 +16,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from facegear.drives.intervals import Intervals, cut, united
+from facegear.floquet.models import Model
+from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.edge_stiffness import complete_harmonics
 from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.mechanics.plate import Body
 from facegear.mechanics.radial_modes import MAX_NODAL_CIRCLES, MAX_NODAL_DIAMETERS
-from facegear.support.parameters import integer_at_least, within
+from facegear.support.parameters import integer_at_least
+from facegear.support.parameters import within as checked_within
 from facegear.support.types import FloatArray
+
+# Ratio of the highest and the lowest speed looked at, at least.
+_WIDE = 1.5
+# A border outside the range may come nearer by so many times what it moved from one basis to the next.
+_ONWARD = 2.0
+# Growth in a period from which a speed counts as unstable in a basis whose multipliers are known less well.
+_ROUGH = 1e-7
 
 
 def with_basis(model: FaceGears, nodal_circles: int, nodal_diameters: int) -> FaceGears:
@@ -62,6 +76,43 @@ def with_basis(model: FaceGears, nodal_circles: int, nodal_diameters: int) -> Fa
     return model.with_gear(replace(gear, body=body, load=load, force=force))
 
 
+def looked_at(speeds: tuple[float, float]) -> tuple[float, float]:
+    """Return the range of speed in which tongues are looked for to judge a range: itself, or wider if that is narrow.
+
+    Examples
+    --------
+    >>> looked_at((10.0, 100.0))
+    (10.0, 100.0)
+    >>> low, high = looked_at((99.0, 101.0))
+    >>> round(high / low, 6), round(low * high, 6)
+    (1.5, 9999.0)
+    """
+    low, high = speeds
+    further = math.sqrt(max(1.0, _WIDE * low / high))
+    return low / further, high * further
+
+
+def found_around(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
+    """Trace tongues in a range; in a basis so large that multipliers are known less well, those that grow faster."""
+    try:
+        return tongues(model, speeds, progress=False)
+    except ArithmeticError:
+        return tongues(model, speeds, threshold=_ROUGH, progress=False)
+
+
+def within(model: Model, found: Sequence[Tongue], speeds: tuple[float, float]) -> tuple[Tongue, ...]:
+    """Cut tongues of a model to a range of speed, with the largest growth there."""
+    low, high = speeds
+    inside = []
+    for tongue in found:
+        lower, upper, peak = max(tongue.lower, low), min(tongue.upper, high), min(max(tongue.peak, low), high)
+        if lower < upper:
+            # Growth falls off from its peak: of what lies in the range it is largest at the end next to that.
+            growth = tongue.growth_rate if peak == tongue.peak else growth_rate(model.system(peak))
+            inside.append(replace(tongue, lower=lower, upper=upper, peak=peak, growth_rate=growth))
+    return tuple(inside)
+
+
 def unstable_share(found: Sequence[Tongue], speeds: tuple[float, float]) -> float:
     """Part of a range of speed that tongues cover, 0 to 1."""
     low, high = speeds
@@ -80,16 +131,16 @@ def disagreement(first: Sequence[Tongue], second: Sequence[Tongue], speeds: tupl
     speeds : tuple of float
         Lowest and highest speed [rad/s].
     """
-    low, high = speeds
-    both = sum(
-        max(0.0, min(one.upper, other.upper) - max(one.lower, other.lower))
-        for one in first
-        for other in second
-    )
-    return max(
-        0.0,
-        unstable_share(first, speeds) + unstable_share(second, speeds) - 2 * both / (high - low),
-    )
+    one, other = (united([(tongue.lower, tongue.upper) for tongue in found]) for found in (first, second))
+    return _apart(one, other, speeds)
+
+
+def _apart(first: Intervals, second: Intervals, speeds: tuple[float, float]) -> float:
+    """Part of a range that lies in one of two sets of intervals, each ascending and apart, 0 to 1."""
+    one, other = cut(first, speeds), cut(second, speeds)
+    both = sum(max(0.0, min(a[1], b[1]) - max(a[0], b[0])) for a in one for b in other)
+    each = sum(high - low for low, high in (*one, *other))
+    return max(0.0, each - 2.0 * both) / (speeds[1] - speeds[0])
 
 
 @dataclass(frozen=True)
@@ -142,12 +193,19 @@ class SettledTongues:
         """Part of the range of speed that is unstable, 0 to 1."""
         return unstable_share(self.tongues, self.speeds)
 
+    @property
+    def growth_moved(self) -> float:
+        """Part by which the largest growth rate differs in the basis before; NaN where it is not known."""
+        rates = [max((t.growth_rate for t in step.tongues), default=math.nan) for step in self.steps[-2:]]
+        return abs(rates[0] / rates[1] - 1.0) if len(rates) == 2 else math.nan
+
 
 def settled_tongues(
     model: FaceGears,
     speeds: tuple[float, float],
     known: Sequence[Tongue] | None = None,
     *,
+    around: tuple[float, float] | None = None,
     tolerance: float = 0.02,
     most_steps: int = 5,
 ) -> SettledTongues:
@@ -163,10 +221,12 @@ def settled_tongues(
     speeds : tuple of float
         Lowest and highest speed [rad/s].
     known : sequence of Tongue, optional
-        Tongues in the first basis, where they have been traced already.
+        Tongues in the first basis, where they have been traced already: in the range of :func:`looked_at`.
+    around : tuple of float, optional
+        Range in which they must stand still [rad/s], which has the other in it; that itself, if left out.
     tolerance : float
-        Part of the range of speed in which two bases in succession may disagree, 1e-6 to 0.5. They must also agree
-        on whether there is any tongue.
+        Part of that range in which two bases in succession may disagree, 1e-6 to 0.5, and may still if borders outside
+        of it come nearer by twice as much as they have moved. They must also agree on whether there is any tongue.
     most_steps : int
         Largest number of bases, at least 1; with one only, nothing is said of how good it is.
 
@@ -180,18 +240,60 @@ def settled_tongues(
     TypeError, ValueError, ArithmeticError
         As :func:`facegear.maps.tracing.tongues`, or if an argument is outside its range.
     """
-    tolerance = within("tolerance", tolerance, 1e-6, 0.5)
+    tolerance = checked_within("tolerance", tolerance, 1e-6, 0.5)
     integer_at_least("most_steps", most_steps, 1)
+    judged = speeds if around is None else around
+    wide = looked_at(judged)
     steps: list[BasisStep] = []
+    before: tuple[Tongue, ...] = ()
     shown = model
     for circles, diameters in _bases(model.gear.body, most_steps):
         shown = with_basis(model, circles, diameters) if steps else model
-        found = tuple(known) if known is not None and not steps else tongues(shown, speeds)
-        moved = disagreement(steps[-1].tongues, found, speeds) if steps else math.nan
-        steps.append(BasisStep(circles, diameters, found, moved))
-        if moved <= tolerance and bool(found) == bool(steps[-2].tongues):
+        found = tuple(known) if known is not None and not steps else found_around(shown, wide)
+        here = within(shown, found, speeds)
+        moved = disagreement(steps[-1].tongues, here, speeds) if steps else math.nan
+        steps.append(BasisStep(circles, diameters, here, moved))
+        if len(steps) > 1 and _stands_still(before, found, judged, tolerance):
             return SettledTongues(shown, speeds, tuple(steps), settled=True)
+        before = found
     return SettledTongues(shown, speeds, tuple(steps), settled=False)
+
+
+def _stands_still(
+    before: Sequence[Tongue], found: Sequence[Tongue], speeds: tuple[float, float], tolerance: float
+) -> bool:
+    """Whether two bases agree in a range, and would if borders outside of it moved on."""
+    if bool(before) != bool(found):
+        return False
+    one, other = (united([(tongue.lower, tongue.upper) for tongue in each]) for each in (before, found))
+    return all(
+        _apart(each, other, speeds) <= tolerance and bool(cut(each, speeds)) == bool(cut(other, speeds))
+        for each in (one, *_moved_on(before, found, speeds))
+    )
+
+
+def _moved_on(
+    before: Sequence[Tongue], found: Sequence[Tongue], speeds: tuple[float, float]
+) -> tuple[Intervals, Intervals]:
+    """Tongues whose borders outside of a range have come nearer, each by twice what it moved since a basis before.
+
+    Those that lie beside the range alone, and those alone that reach into it, which uncover it so.
+    """
+    low, high = speeds
+    coming, going = [], []
+    for tongue in found:
+        ends = (tongue.lower, tongue.upper)
+        was = min(before, key=lambda other: abs(other.lower - tongue.lower) + abs(other.upper - tongue.upper))
+        up, down = (_ONWARD * abs(end - old) for end, old in zip(ends, (was.lower, was.upper), strict=True))
+        lower, upper = ends
+        if lower > high or upper < low:
+            coming.append((lower - up, upper) if lower > high else (lower, upper + down))
+            going.append(ends)
+        else:
+            coming.append(ends)
+            lower, upper = (lower + up if lower < low else lower), (upper - down if upper > high else upper)
+            going += [(lower, upper)] if lower < upper else []
+    return united(coming), united(going)
 
 
 def _bases(body: Body, most: int) -> list[tuple[int, int]]:

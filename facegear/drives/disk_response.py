@@ -18,6 +18,7 @@ import xarray as xr
 from facegear.drives.basis import unstable_share, with_basis
 from facegear.drives.outcome import Outcome
 from facegear.drives.refusals import told
+from facegear.drives.response_peaks import largest_force
 from facegear.drives.variants import Variant
 from facegear.floquet.fourier import fourier_series
 from facegear.floquet.models import Coordinate, system_at
@@ -133,17 +134,7 @@ class DiskResponse:
 
 def largest_departure(data: xr.Dataset) -> tuple[float, float]:
     """By how much the force of a mesh departs from the static one at most [N], and at which speed [rad/s]."""
-    known = data.dropna("speed", subset=["force_highest"])
-    speeds = np.concatenate([np.repeat(known.speed.values, known.sizes["load"]), data["peak_speed"].values])
-    ends = [
-        np.concatenate([known[f"force_{end}"].values.ravel(), data[f"peak_force_{end}"].values])
-        for end in ("lowest", "highest")
-    ]
-    departs = np.abs(ends).max(axis=0)
-    if not departs.size:
-        return math.nan, math.nan
-    at = int(departs.argmax())
-    return float(departs[at]), float(speeds[at])
+    return largest_force(data, "lowest", "highest")
 
 
 def transmission_error(variant: Variant, force: float) -> PiecewiseChebyshev | str:

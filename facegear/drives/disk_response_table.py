@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from facegear.drives.disk_response import DiskResponse
+from facegear.drives.response_peaks import peak_arrays
 from facegear.drives.variants import Variant
 from facegear.support.labelled import text, variable
 from facegear.support.types import FloatArray
@@ -102,30 +103,8 @@ def peaks_table(found: Sequence[DiskResponse], parameters: str) -> xr.Dataset | 
     """
     computed = [(each.variant, each.data) for each in found if each.data is not None]
     variants = [variant for variant, data in computed for _ in range(data.sizes["peak"])]
-    if not variants:
-        return None
-
-    def joined(name: str) -> Any:
-        return np.concatenate([data[f"peak_{name}"].values for _, data in computed])
-
-    return xr.Dataset(
-        {
-            "peak_speed": variable("peak", joined("speed"), "Speed of a peak", "rad/s", rtol=1e-4),
-            **{
-                key: variable("peak", joined(key), words, "N", rtol=1e-4, atol=1e-6)
-                for key, words in _MEANINGS.items()
-            },
-            "pinion": variable(
-                "peak", joined("load").astype(float), "Number of the pinion, from 0", "1", atol=0.1
-            ),
-        },
-        {
-            "peak": np.arange(len(variants)),
-            **_names("peak", variants),
-            "label": text("peak", joined("label").tolist(), "Mode / harmonic of the mesh"),
-        },
-        {"parameters": parameters},
-    )
+    names, responses = _names("peak", variants), [data for _, data in computed]
+    return peak_arrays(responses, _MEANINGS, ("pinion", "pinion"), parameters, names)
 
 
 def _names(dimension: str, variants: Sequence[Variant]) -> dict[str, Any]:

@@ -175,8 +175,8 @@ _OPERATION = Section(
             "force_at",
             "where the driving force of the power presses: one point of the rim, as printed (rim), or of the pitch "
             "circle (pitch); face and root of one tooth (tooth), or of the tooth pairs in mesh (pairs, chapter 8). "
-            "Everywhere it has the moment of the printed force, F_t at the rim: that of the power times outer over "
-            "pitch radius of the gear",
+            "Everywhere it has the moment of the printed force, which is at the rim: that of the power times outer "
+            "over pitch radius of the gear",
             "choice",
             default=RIM,
             choices=PLACES,

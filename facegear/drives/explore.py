@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from facegear.drives.cell import UNSTABLE, CellDetail, cell_detail
 from facegear.drives.studies.study import Quantity, Settings, Study
 from facegear.floquet.models import Model, parameter_path, replace_parameter
-from facegear.maps.rows import Rows
-from facegear.maps.stability_map import stability_map, way_of
+from facegear.maps.axes import periods_at
+from facegear.maps.sweep import Sweep
+from facegear.maps.ways import Way
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
 
@@ -46,28 +47,29 @@ def map_stages(
         Growth rates [1/s], with the period [s] of each speed as a coordinate. In the first, cells that are not yet
         computed have the value of a neighbour; attribute ``computed`` is the part of the cells that are final.
     """
-    way = way_of(model, speeds, parameter, values)
-    grown = _rows if way in ("columns", "rows") else _map
+    way, name = (
+        Way.of(Sweep(model, parameter, tuple(values.tolist()), None), speeds),
+        parameter_path(model, parameter)[-1],
+    )
     columns = np.arange(min(_COLUMN_STEP // 2, speeds.size - 1), speeds.size, _COLUMN_STEP)
-    step = 1 if way == "loads" else _ROW_STEP
+    step = 1 if way.name == "loads" else _ROW_STEP
     rows = np.arange(min(step // 2, values.size - 1), values.size, step)
-    coarse = grown(model, speeds[columns], parameter, values[rows])
-    growth = coarse[_nearest(values.size, rows)][:, _nearest(speeds.size, columns)]
-    name, periods = parameter_path(model, parameter)[-1], _periods(model, speeds)
+    growth = _growth(way.part(rows, columns))[_nearest(values.size, rows)]
+    growth, periods = growth[:, _nearest(speeds.size, columns)], periods_at(model, speeds)
 
     def stage(computed: float) -> xr.DataArray:
         return _labelled(name, values, speeds, growth.copy(), periods, computed)
 
-    yield stage(columns.size / speeds.size if way == "loads" else 0.0)
-    if way in ("loads", "columns"):
-        missing = np.setdiff1d(np.arange(speeds.size), columns if way == "loads" else [])
+    yield stage(columns.size / speeds.size if way.name == "loads" else 0.0)
+    if way.name in ("loads", "columns"):
+        missing = np.setdiff1d(np.arange(speeds.size), columns if way.name == "loads" else [])
         if missing.size:
-            growth[:, missing] = _map(model, speeds[missing], parameter, values)
+            growth[:, missing] = _growth(way.part(np.arange(values.size), missing))
             yield stage(1.0)
         return
     final = 0
     for part in _parts(values.size):
-        found = grown(model, speeds, parameter, values[part])
+        found = _growth(way.part(part, np.arange(speeds.size)))
         if part[0] % 2 == 0:
             # The row above each comes later, and is taken for its like until then.
             above = np.minimum(part + 1, values.size - 1)
@@ -87,14 +89,8 @@ def _parts(rows: int) -> list[NDArray[np.int64]]:
 
 def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
     """Return the last stage of :func:`map_stages` without those before it."""
-    by_rows = way_of(model, speeds, parameter, values) == "rows"
-    growth = (_rows if by_rows else _map)(model, speeds, parameter, values)
-    name = parameter_path(model, parameter)[-1]
-    return _labelled(name, values, speeds, growth, _periods(model, speeds), 1.0)
-
-
-def _periods(model: Model, speeds: FloatArray) -> FloatArray:
-    return np.array([model.system(float(speed)).period for speed in speeds])
+    way = Way.of(Sweep(model, parameter, tuple(values.tolist()), None), speeds)
+    return _labelled(way.sweep.path[-1], values, speeds, _growth(way), periods_at(model, speeds), 1.0)
 
 
 def _labelled(
@@ -114,17 +110,16 @@ def _labelled(
     )
 
 
-def _map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> FloatArray:
+def _growth(way: Way) -> FloatArray:
     """Growth rates [1/s], (V, S)."""
-    # One worker: starting others would take longer than the map.
-    return stability_map(model, speeds, parameter, values, jobs=1, progress=False).values
-
-
-def _rows(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> FloatArray:
-    """Growth rates [1/s], (V, S), cell by cell, without what :func:`stability_map` tells besides."""
-    task = Rows(model, parameter_path(model, parameter), tuple(values.tolist()), tuple(speeds.tolist()), None)
+    # In this process: starting others would take longer than the map.
     with one_thread():
-        radii, periods = task.compute()
+        if way.name == "rows":
+            radii, periods = way.rows().compute()
+        else:
+            radii, periods, _ = way.radii(
+                lambda tasks, *_: ((k, task.compute()) for k, task in enumerate(tasks))
+            )
     return np.asarray(np.log(radii) / periods)
 
 

@@ -10,6 +10,9 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+# A kernel has run the notebook before the page is opened: what then remains is what a browser does. The next one is
+# made ready when the page has had time [s] to come up.
+READY = ("--preheat_kernel=True", "--VoilaKernelManager.fill_delay=5")
 _NEEDED = ("anywidget", "ipykernel", "ipywidgets", "plotly", "voila")
 
 
@@ -69,7 +72,7 @@ def serve(drive_file: str | Path | None, port: int | None, *, browser: bool) -> 
     with tempfile.TemporaryDirectory(prefix="facegear-") as folder:
         path = Path(folder, "facegear.ipynb")
         path.write_text(json.dumps(notebook(drive_file)), encoding="utf-8")
-        command = [sys.executable, "-m", "voila", str(path), "--Voila.ip=127.0.0.1"]
+        command = [sys.executable, "-m", "voila", str(path), *READY, "--Voila.ip=127.0.0.1"]
         command += [] if port is None else [f"--port={port}"]
         command += [] if browser else ["--no-browser"]
         with subprocess.Popen(command) as running:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from facegear.drives.variants import Variant
@@ -19,11 +20,14 @@ class Outcome:
     tongues : tuple of Tongue
     settled : bool
         Whether they stood still from the basis before to that one.
+    growth_moved : float
+        Part by which the largest growth rate differs in the basis before; NaN where it is not known.
     """
 
     variant: Variant
     tongues: tuple[Tongue, ...]
     settled: bool
+    growth_moved: float = math.nan
 
     @property
     def is_stable(self) -> bool:

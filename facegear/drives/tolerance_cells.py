@@ -17,8 +17,9 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations, count, product
 from typing import Any
 
-from facegear.drives.intervals import cut, gaps, united
-from facegear.maps.tracing import Tongue, search_seconds, tongues
+from facegear.drives.basis import found_around
+from facegear.drives.intervals import Intervals, cut, gaps, united
+from facegear.maps.tracing import Tongue, search_seconds
 
 # Ratio of the largest and the smallest stiffness of a cell above which it is halved in any case.
 _COARSE = 1.25
@@ -39,8 +40,6 @@ of a resonance may double from there, and of a fine one."""
 _SECONDS = 12.0
 # Part by which the search goes beyond the speeds from which tongues can come, for what of a frequency no spring makes.
 _MARGIN = 1.02
-# Growth in a period from which a speed counts as unstable where that of other searches cannot be told.
-_ROUGH = 1e-7
 
 Factors = tuple[float, ...]
 Range = tuple[float, float]
@@ -149,6 +148,8 @@ class BoxSearch:
     points : dict of tuple of float to tuple of Tongue
         Tongues by factors, in the order of `parts`, the values of the file first: where there are none, only if the
         whole range was looked at.
+    looked_at : dict of tuple of float to tuple of tuple of float
+        Intervals of speed [rad/s] that were looked at with the factors of `points`, ascending and apart.
     swept, possible : list of tuple of float
         Intervals of speed [rad/s], in no order, with some value that is unstable, and in which there may be one.
     """
@@ -157,6 +158,7 @@ class BoxSearch:
     parts: Mapping[str, float]
     wide: Range
     points: dict[Factors, tuple[Tongue, ...]] = field(default_factory=dict)
+    looked_at: dict[Factors, Intervals] = field(default_factory=dict)
     swept: list[Range] = field(default_factory=list)
     possible: list[Range] = field(default_factory=list)
     _seconds: float = 0.0
@@ -170,6 +172,7 @@ class BoxSearch:
         widest = min(cell.around[0] for cell in cells), max(cell.around[1] for cell in cells)
         nominal = (1.0,) * len(self.parts)
         own = self.points[nominal] = self._tongues(nominal, widest)
+        self.looked_at[nominal] = (self.wide,)
         self.swept += [(tongue.lower, tongue.upper) for tongue in own]
         self.possible += self.swept
         for springs in sorted({corner for cell in cells for corner in cell.corners}):
@@ -285,12 +288,13 @@ class BoxSearch:
         return _apart(found, least)
 
     def _keep(self, factors: Factors, found: tuple[Tongue, ...], around: Range) -> None:
-        """Keep tongues of some factors, of a part of the range such as it does not cut."""
+        """Keep tongues of some factors, of a part of the range such as it does not cut, and what was looked at."""
+        parts = cut(united([*self.looked_at.get(factors, ()), around]), self.wide)
         if around[0] <= self.wide[0] and self.wide[1] <= around[1]:
-            self.points[factors] = found
+            self.points[factors], self.looked_at[factors] = found, parts
         elif inner := tuple(t for t in found if around[0] < t.lower and t.upper < around[1]):
             known = self.points.get(factors, ())
-            self.points[factors] = known + _apart(inner, known)
+            self.points[factors], self.looked_at[factors] = known + _apart(inner, known), parts
 
     def _ends(self, wanted: Callable[[str], bool]) -> tuple[Factors, Factors]:
         """Lower and upper ends of the factors of those parts."""
@@ -308,15 +312,12 @@ class BoxSearch:
         return replace(self.model, **dict(zip(names, factors, strict=True)))
 
     def _tongues(self, factors: Factors, around: Range) -> tuple[Tongue, ...]:
-        """Trace tongues of one value; one of many may have two multipliers so close that they are known less well."""
+        """Trace tongues of one value."""
         if (known := self._traced.get(factors)) is not None and known[0] == around:
             return known[1]
         model = self.at(factors)
         self._seconds += search_seconds(model, around)
-        try:
-            found = tongues(model, around, progress=False)
-        except ArithmeticError:
-            found = tongues(model, around, threshold=_ROUGH, progress=False)
+        found = found_around(model, around)
         self._traced[factors] = around, found
         return found
 

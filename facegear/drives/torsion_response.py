@@ -2,37 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from facegear.support.labelled import text, variable
+from facegear.drives.response_peaks import largest_force, peak_arrays
+from facegear.support.labelled import variable
 from facegear.support.parameters import rpm
 
 AT_BORDERS = " Closer to a border of instability it can be larger, without a bound."
 """What is said where speeds without a steady response lie among those looked at."""
 
 _STATISTICS = ("mean", "rms", "lowest", "highest")
-
-
-def largest_load(response: xr.Dataset) -> tuple[float, float]:
-    """Find the largest force of a tooth pair, at a speed looked at or at a peak between them.
-
-    Parameters
-    ----------
-    response : xarray.Dataset
-        From :func:`facegear.maps.response_map.frequency_response`, with a response at one speed or more.
-
-    Returns
-    -------
-    force, speed : float
-        [N], [rad/s].
-    """
-    known = response.dropna("speed", subset=["force_highest"])
-    forces = np.append(known["force_highest"].max("load"), response["peak_force_highest"])
-    at = int(forces.argmax())
-    return float(forces[at]), float(np.append(known["speed"], response["peak_speed"])[at])
 
 
 class Parting(NamedTuple):
@@ -53,7 +35,7 @@ def parted(response: xr.Dataset, static: float = 0.0) -> Parting:
     Parameters
     ----------
     response : xarray.Dataset
-        As :func:`largest_load`; it may have a response nowhere.
+        From :func:`facegear.maps.response_map.frequency_response`; it may have a response nowhere.
     static : float
         Force that presses the flanks and is none of the response [N].
     """
@@ -70,7 +52,7 @@ def in_words(response: xr.Dataset, static: float) -> str:
     Parameters
     ----------
     response : xarray.Dataset
-        As :func:`largest_load`; it may have a response nowhere.
+        As for :func:`parted`.
     static : float
         Whole force of a mesh at rest [N].
 
@@ -82,7 +64,7 @@ def in_words(response: xr.Dataset, static: float) -> str:
     count = known.sizes["speed"]
     if not count:
         return "In torsion it is unstable at all speeds looked at: there is no steady load of the teeth."
-    peaks, (largest, speed) = response.sizes["peak"], largest_load(response)
+    peaks, (largest, speed) = response.sizes["peak"], largest_force(response, "highest")
     part = parted(response)
     rises = count < response.sizes["speed"] or response.attrs["at_borders"]
     between = (
@@ -117,7 +99,14 @@ def response_table(response: xr.Dataset, parameters: str) -> xr.Dataset:
     speed = response["speed"].values
     return xr.Dataset(
         {
-            f"force_{name}": _force(("speed", "pair"), response[f"force_{name}"].values, name)
+            f"force_{name}": variable(
+                ("speed", "pair"),
+                response[f"force_{name}"].values,
+                _meaning(name),
+                "N",
+                rtol=1e-6,
+                atol=1e-6,
+            )
             for name in _STATISTICS
         },
         {
@@ -142,30 +131,9 @@ def peaks_table(response: xr.Dataset, parameters: str) -> xr.Dataset | None:
         Over ``peak``: ``peak_speed`` [rad/s], ``force_rms``, ``force_lowest``, ``force_highest`` [N], ``pair``,
         numbered from 0; label as a coordinate.
     """
-    count = response.sizes["peak"]
-    if not count:
-        return None
-    numbers = response["peak_load"].values.astype(float)
-    forces = {
-        f"force_{name}": _force("peak", response[f"peak_force_{name}"].values, name)
-        for name in _STATISTICS[1:]
-    }
-    return xr.Dataset(
-        {
-            "peak_speed": variable(
-                "peak", response["peak_speed"].values, "Speed of a peak", "rad/s", rtol=1e-4
-            ),
-            **forces,
-            "pair": variable("peak", numbers, "Number of the tooth pair, from 0", "1", atol=0.1),
-        },
-        {
-            "peak": np.arange(count),
-            "label": text("peak", response["peak_label"].values.tolist(), "Mode / harmonic of the mesh"),
-        },
-        {"parameters": parameters},
-    )
+    forces = {f"force_{name}": _meaning(name) for name in _STATISTICS[1:]}
+    return peak_arrays([response], forces, ("pair", "tooth pair"), parameters)
 
 
-def _force(dims: str | tuple[str, ...], values: Any, name: str) -> Any:
-    which = "rms of what varies" if name == "rms" else name
-    return variable(dims, values, f"Force of a tooth pair, {which}", "N", rtol=1e-6, atol=1e-6)
+def _meaning(name: str) -> str:
+    return f"Force of a tooth pair, {'rms of what varies' if name == 'rms' else name}"

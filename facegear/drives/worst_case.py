@@ -5,15 +5,14 @@ Found by the cells of :mod:`facegear.drives.tolerance_cells`, not by drawing val
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
+from facegear.drives.basis import within
 from facegear.drives.intervals import Intervals, cut, united
 from facegear.drives.tolerance_cells import BoxSearch, Factors, Range
 from facegear.drives.tolerances import Toleranced, TolerancedGearbox, Tolerances
-from facegear.floquet.models import Model
-from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.pinions_on_disk import FaceGears
 
@@ -33,6 +32,8 @@ class WorstCase:
         Intervals of speed [rad/s], ascending and apart, in which some value is unstable.
     possible : tuple of tuple of float
         Intervals in which that is so or cannot be excluded; these hold the others.
+    looked_at : dict
+        Intervals of speed in which each of these points was looked at: some in a part of the range only.
     factors : tuple of str
         What the points have factors of, in words.
     unknown : str
@@ -43,6 +44,7 @@ class WorstCase:
     points: dict[Factors, tuple[Tongue, ...]] = field(repr=False)
     swept: Intervals
     possible: Intervals
+    looked_at: dict[Factors, Intervals] = field(default_factory=dict, repr=False)
     factors: tuple[str, ...] = ("stiffness", "damping")
     unknown: str = ""
 
@@ -131,7 +133,7 @@ def worst_case_in_torsion(torsional: Any, speeds: tuple[float, float], tolerance
 def not_known(reason: str, speeds: tuple[float, float], tolerances: Tolerances) -> WorstCase:
     """Worst case that could not be computed, and why."""
     wide = tolerances.widened(speeds)
-    return WorstCase(wide, {}, (), (wide,), (), reason)
+    return WorstCase(wide, {}, (), (wide,), factors=(), unknown=reason)
 
 
 def _in_box(model: Any, parts: Mapping[str, float], wide: Range) -> WorstCase:
@@ -140,21 +142,12 @@ def _in_box(model: Any, parts: Mapping[str, float], wide: Range) -> WorstCase:
     search.run()
     return WorstCase(
         wide,
-        {point: _within(search.at(point), each, wide) for point, each in search.points.items()},
+        {
+            point: tuple(sorted(within(search.at(point), each, wide), key=lambda tongue: tongue.lower))
+            for point, each in search.points.items()
+        },
         cut(united(search.swept), wide),
         cut(united(search.possible), wide),
+        {point: search.looked_at[point] for point in search.points},
         tuple(parts),
     )
-
-
-def _within(model: Model, found: Sequence[Tongue], wide: tuple[float, float]) -> tuple[Tongue, ...]:
-    """Cut tongues to a range of speed, with the largest growth there."""
-    low, high = wide
-    inside = []
-    for tongue in found:
-        lower, upper, peak = max(tongue.lower, low), min(tongue.upper, high), min(max(tongue.peak, low), high)
-        if lower < upper:
-            # Growth falls off from its peak: of what lies in the range it is largest at the end next to that.
-            growth = tongue.growth_rate if peak == tongue.peak else growth_rate(model.system(peak))
-            inside.append(replace(tongue, lower=lower, upper=upper, peak=peak, growth_rate=growth))
-    return tuple(inside)

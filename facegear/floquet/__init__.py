@@ -5,10 +5,10 @@ Systems: `periodic` has the equations, `loads` what varies in them, `load_column
 makes a system at each speed, `modified_models` are made of others.
 
 Multipliers: `multipliers` are those of the transition matrix by one of the `methods`; `error_estimates` tell how well
-they are known. `collocation` takes the modes of `free_modes`, the panels of `gauss_panels` and the equations of
-`contact_forces`; the others are `stepping`, `radau` and `taylor`. `columns`, `multiplier_curves` and `sheets` have the
-matrix along a parameter, along speed and along both. `eigenvalues` and `eigenvectors` are those of many matrices, in
-`lockstep` and `lockstep_vectors` where Numba is installed (`compiled`), as `lockstep_exponentials` and
+they are known. `collocation` takes `free_systems` in their `free_modes`, the panels of `gauss_panels` and the equations
+of `contact_forces`; the others are `stepping`, `radau` and `taylor`. `columns`, `multiplier_curves` and `sheets` have
+the matrix along a parameter, along speed and along both. `eigenvalues` and `eigenvectors` are those of many matrices,
+in `lockstep` and `lockstep_vectors` where Numba is installed (`compiled`), as `lockstep_exponentials` and
 `lockstep_taylor` have steps of small systems.
 
 Modes and approximations: `modes` has natural motions, `labels` names what is unstable; `modal` is the standard form for

@@ -11,12 +11,14 @@ equations of :mod:`facegear.floquet.contact_forces`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from facegear.floquet.contact_forces import ForcePanels, Nodes, at_nodes, in_place, mobilities
-from facegear.floquet.free_modes import HeldSystems, UnsuitableSystemError
+from facegear.floquet.contact_forces import ForcePanels, Nodes, at_nodes, in_place
+from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.free_systems import FreeSystems
 from facegear.floquet.gauss_panels import gauss_rule, panel_edges, within_reach
 from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.loads import weighted_shape
@@ -32,6 +34,8 @@ DEFAULT_NODES = 16
 DEFAULT_PANEL_ANGLE = 8.0
 #: Estimated error of the motion over one panel at which it is halved, in units of the root of the energy.
 PANEL_TOLERANCE = 1e-12
+# Part of the root of it, the error of the force, that the shape of a load may leave to the last coefficients.
+_FOLLOWED = 0.1
 # Rounds of halving before a system is refused.
 _MOST_HALVINGS = 8
 # Panels that take as long as to begin with other ones: systems that turn less in a period share those of another until
@@ -39,61 +43,55 @@ _MOST_HALVINGS = 8
 _SHARED = 12.0
 # Entries of the largest stack of matrices of a family: as many as fit in a cache.
 _ENTRIES = 500_000
+# Entries of matrices of systems whose modes are found together.
+_MODE_ENTRIES = 100_000
 
 
 class FreeMotion:
-    """A system prepared for many values of its load parameters up to those of `column`, or many systems for one each.
+    """A system prepared for many values of its load parameters up to those of its column, or many systems, one each.
 
     Parameters
     ----------
-    systems : sequence of PeriodicSystem
-        One for all values of the column, or one a value; of one size, with common breakpoints. Their own load
-        parameters are not used.
-    column : LoadColumn
-        The values that will be asked for, so that the panels suit the fastest of them.
+    free : FreeSystems
+        Their column has the values that will be asked for, so that the panels suit the fastest of them.
     nodes : int
         Gauss nodes a panel.
     panel_angle : float
         Largest product of fastest frequency and panel length [rad].
     instants : array
         Fractions of the period that panels end at, besides the breakpoints.
-    fewest_held : int
-        Number of coordinates from which on motions that hang on nothing are held by springs that are taken back.
 
     Raises
     ------
     UnsuitableSystemError
-        See :meth:`facegear.floquet.free_modes.FreeModes.of`.
+        If the contact forces are too rough.
     """
 
     def __init__(
         self,
-        systems: Sequence[PeriodicSystem],
-        column: LoadColumn,
+        free: FreeSystems,
         nodes: int = DEFAULT_NODES,
         panel_angle: float = DEFAULT_PANEL_ANGLE,
         instants: Sequence[float] = (),
-        fewest_held: int = 1,
     ) -> None:
-        self.systems = systems
+        self.systems, self.column = free.systems, free.column
+        column = self.column
         self._nodes = nodes
-        stiffest = float((column.stiffness * mobilities(systems)).sum(axis=-1).max())
-        self._held = HeldSystems.of(systems, stiffest, fewest_held)
-        self.modes = self._held.modes
-        periods = np.array([system.period for system in systems])
-        frequencies = np.abs(self.modes.eigenvalues).max(axis=-1)
-        angle = float((np.hypot(frequencies, np.sqrt(stiffest)) * periods).max())
-        ends = merge_breakpoints([systems[0].breakpoints, np.array(instants)])
-        self.edges = panel_edges(ends, angle, panel_angle)
+        self._held, self.modes = free.held, free.held.modes
+        ends = merge_breakpoints([self.systems[0].breakpoints, np.array(instants)])
+        self.edges = _following(
+            self.systems[0], panel_edges(ends, float(free.angles.max()), panel_angle), nodes
+        )
         # Of the free motion only what the loads ask for: its accelerations where they have mass, and so on.
         self._orders = 3 if column.mass.any() else 2 if column.damping.any() else 1
+        self._own = self._load_parameters(column) if len(self.systems) > 1 else None
         self.panels = self._build(nodes, self.edges[:-1], np.diff(self.edges))
-        known = column.extremes() if len(systems) == 1 else column
+        known = column.extremes() if len(self.systems) == 1 else column
         self._known = (known, self._halve_unresolved_panels(known, nodes))
-        self.kicks = [self._kick_data(system) if self._orders == 3 else [] for system in systems]
+        self.kicks = [self._kick_data(system) if self._orders == 3 else [] for system in self.systems]
 
     def _build(self, nodes: int, start: FloatArray, length: FloatArray) -> ForcePanels:
-        return ForcePanels.of(self._held.systems, self.modes, nodes, start, length, self._orders)
+        return ForcePanels.of(self._held.systems, self.modes, nodes, start, length, self._orders, self._own)
 
     def _halve_unresolved_panels(self, column: LoadColumn, nodes: int) -> FloatArray:
         """Halve panels until the contact forces of all initial states are resolved at the given values.
@@ -104,7 +102,7 @@ class FreeMotion:
         coefficients of the force are ε of its size, ε² is left of its effect.
         """
         tail = legendre_from_values(nodes)[-2:]
-        parameters = self._load_parameters(column)
+        parameters = None if self._own is not None else self._load_parameters(column)
         force = self.panels.forces(parameters)
         for _ in range(_MOST_HALVINGS):
             shape = (*force.shape[:2], nodes, -1, force.shape[-1])
@@ -118,8 +116,7 @@ class FreeMotion:
             unresolved = error > PANEL_TOLERANCE
             if not unresolved.any():
                 return force
-            middle = (self.edges[:-1] + self.edges[1:]) / 2.0
-            self.edges = np.sort(np.concatenate([self.edges, middle[unresolved]]))
+            self.edges = _halved(self.edges, unresolved)
             new = np.repeat(unresolved, 1 + unresolved)
             halves = self._build(nodes, self.edges[:-1][new], np.diff(self.edges)[new])
             self.panels = self.panels.halved(unresolved, halves)
@@ -162,6 +159,8 @@ class FreeMotion:
         known, forces = self._known
         if np.array_equal(known.stacked(), column.stacked()):
             return forces
+        if self._own is not None:
+            raise ValueError("column must be that of the systems, which have one value each")
         return self.panels.forces(self._load_parameters(column))
 
     def _load_parameters(self, column: LoadColumn) -> FloatArray:
@@ -269,6 +268,24 @@ class FreeMotion:
         return kicks
 
 
+def _following(system: PeriodicSystem, edges: FloatArray, nodes: int) -> FloatArray:
+    """Halve panels along which polynomials do not follow the shapes of loads: there they would not follow forces."""
+    tail, allowed = legendre_from_values(nodes)[-2:], _FOLLOWED * PANEL_TOLERANCE**0.5
+    for _ in range(_MOST_HALVINGS if system.loads else 0):
+        at = edges[:-1, np.newaxis] + np.diff(edges)[:, np.newaxis] * gauss_rule(nodes)[0]
+        (shapes,) = at_nodes([system], lambda load: load.shape, at)
+        left_out = np.abs(np.tensordot(tail, shapes, axes=(1, 1))).max(axis=(0, 3))
+        rough = (left_out > allowed * np.abs(shapes).max(axis=(0, 1, 3))).any(axis=1)
+        if not rough.any():
+            break
+        edges = _halved(edges, rough)
+    return edges
+
+
+def _halved(edges: FloatArray, chosen: NDArray[np.bool_]) -> FloatArray:
+    return np.sort(np.concatenate([edges, ((edges[:-1] + edges[1:]) / 2.0)[chosen]]))
+
+
 def chain(steps: FloatArray) -> FloatArray:
     """Product steps[:, -1] ... steps[:, 1] steps[:, 0], by pairs, shape (V, m, d, d) -> (V, d, d)."""
     while steps.shape[1] > 1:
@@ -289,7 +306,7 @@ def transition_matrices_to(instants: Sequence[float], system: PeriodicSystem) ->
         If the free motion has rigid-body, overdamped or defective modes.
     """
     column = LoadColumn.of(system)
-    motion = FreeMotion([system], column, instants=instants)
+    motion = FreeMotion(FreeSystems.of([system], column), instants=instants)
     modes = motion.modes
     return np.asarray(
         modes.state_from_real() @ motion.transition_matrices_to(instants, column) @ modes.real_from_state()
@@ -320,20 +337,30 @@ def transition_matrices(
     UnsuitableSystemError
         If the free motion has overdamped or defective modes, or rigid-body ones in a system that is not held.
     """
-    turns = np.array([system.period * np.sqrt(np.abs(system.stiffness).max()) for system in systems])
-    loads, size = len(systems[0].loads) * nodes, 2 * systems[0].size
-    matrices = np.empty((len(systems), size, size))
-    order = np.argsort(-turns)
+    # The longest periods first, in the units of the fastest motion: such neighbours share panels.
+    order = np.argsort([-system.period * np.sqrt(np.abs(system.stiffness).max()) for system in systems])
+    matrices = np.empty((len(systems), 2 * systems[0].size, 2 * systems[0].size))
+    size = max(1, _MODE_ENTRIES // systems[0].size ** 2)
+    for start in range(0, order.size, size):
+        chosen = order[start : start + size]
+        some = [systems[number] for number in chosen.tolist()]
+        free = FreeSystems.of(some, LoadColumn.of_all(some), fewest_held)
+        for places in _families(free, nodes, panel_angle):
+            motion = FreeMotion(free.some(places), nodes, panel_angle)
+            found = motion.transition_matrices(motion.column)
+            matrices[chosen[places]] = motion.modes.state_from_real() @ found @ motion.modes.real_from_state()
+    return matrices
+
+
+def _families(free: FreeSystems, nodes: int, panel_angle: float) -> Iterator[NDArray[np.intp]]:
+    """Places of systems that are taken together: panels that resolve one resolve those that turn a little less."""
+    angles = free.angles
+    loads, size = len(free.held.systems[0].loads) * nodes, 2 * free.systems[0].size
+    order = np.argsort(-angles)
     while order.size:
-        # Panels that resolve one system resolve all that turn a little less in a period.
-        panels = systems[0].breakpoints.size + within_reach(turns[order[0]] / panel_angle)
+        panels = free.systems[0].breakpoints.size + within_reach(angles[order[0]] / panel_angle)
         together = order[: max(1, _ENTRIES // (panels * max(loads, size) * (loads + size)))]
-        more = np.cumsum(turns[together[0]] - turns[together]) / panel_angle
+        more = np.cumsum(angles[together[0]] - angles[together]) / panel_angle
         together = together[: np.count_nonzero(more <= _SHARED)]
         order = order[together.size :]
-        family = [systems[number] for number in together.tolist()]
-        column = LoadColumn.from_stacked(np.concatenate([LoadColumn.of(x).stacked() for x in family]))
-        motion = FreeMotion(family, column, nodes, panel_angle, fewest_held=fewest_held)
-        found = motion.transition_matrices(column)
-        matrices[together] = motion.modes.state_from_real() @ found @ motion.modes.real_from_state()
-    return matrices
+        yield together

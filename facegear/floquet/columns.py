@@ -14,11 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from facegear.floquet.collocation import FreeMotion
 from facegear.floquet.contact_forces import mobilities
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.load_columns import LoadColumn
-from facegear.floquet.methods import Collocation, Method, with_method
+from facegear.floquet.methods import Method, PreparesLoads, with_method
 from facegear.floquet.multipliers import transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.series import ChebyshevSeries
@@ -177,14 +176,10 @@ class LoadSweep:
 
     def matrices(self, system: PeriodicSystem, method: Method, scale: FloatArray) -> Evaluate:
         """Transition matrices of a system at values of the variable, S Φ S⁻¹ with the given S."""
+        if isinstance(method, PreparesLoads):
+            prepared = method.along_loads(system, self.column, scale)
+            return lambda t: prepared(self.at(t))
         inverse = np.linalg.inv(scale)
-        if isinstance(method, Collocation):
-            # What does not depend on the loads is prepared once.
-            motion = FreeMotion(
-                [system], self.column, method.nodes, method.panel_angle, fewest_held=method.fewest_held
-            )
-            to, back = scale @ motion.modes.state_from_real()[0], motion.modes.real_from_state()[0] @ inverse
-            return lambda t: to @ motion.transition_matrices(self.at(t)) @ back
 
         def matrices(t: FloatArray) -> FloatArray:
             part = self.at(t)

@@ -12,7 +12,7 @@ H, F, E, G do not depend on k, c, m, so a whole column of a map shares them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -47,8 +47,8 @@ class Nodes:
         z₀, z₁, z₂, or as many of them as were asked for: what u, u̇ and ü of the free motion are made of.
     beta : array of complex, shape (S, P, N, p, n)
         Modal accelerations β by unit contact forces.
-    direct : array, shape (S, P, N, p, p)
-        D, accelerations ü by unit contact forces.
+    direct : array, shape (S, P, N, p, p), optional
+        D, accelerations ü by unit contact forces, where accelerations are read.
     """
 
     fractions: FloatArray
@@ -57,7 +57,7 @@ class Nodes:
     half: ComplexArray
     reading: ComplexArray
     beta: ComplexArray
-    direct: FloatArray
+    direct: FloatArray | None
 
     @classmethod
     def of(
@@ -112,8 +112,11 @@ class Nodes:
             if orders > 2:
                 read[2] += 2.0 * rate * readings(slope, velocity)
                 read[2] += rate**2 * readings(values(lambda load: load.curvature), modes.displacement)
-        inverse = np.linalg.inv(np.stack([system.mass for system in systems]))
-        moved = (weighted @ inverse).reshape(systems_, count, nodes, p, n)
+        direct = None
+        if orders > 2:
+            inverse = np.linalg.inv(np.stack([system.mass for system in systems]))
+            moved = (weighted @ inverse).reshape(systems_, count, nodes, p, n)
+            direct = phi.reshape(len(phi), count, nodes, p, n) @ moved.swapaxes(-1, -2)
         return cls(
             fractions=fractions,
             spans=h,
@@ -121,8 +124,18 @@ class Nodes:
             half=np.exp(exponents / 2.0),
             reading=read,
             beta=readings(weighted, modes.input.swapaxes(-1, -2)),
-            direct=phi.reshape(len(phi), count, nodes, p, n) @ moved.swapaxes(-1, -2),
+            direct=direct,
         )
+
+    def loaded(self, parameters: FloatArray) -> Nodes:
+        """Read the force k u + c u̇ + m ü of each system's own parameters (3, S, p), in place of what it is made of."""
+        force = np.zeros_like(self.reading[:1])
+        for order, read in enumerate(self.reading):
+            force[0] += parameters[order][:, np.newaxis, np.newaxis, :, np.newaxis] * read
+        direct = self.direct
+        if direct is not None:
+            direct = parameters[2][:, np.newaxis, np.newaxis, :, np.newaxis] * direct
+        return replace(self, reading=force, direct=direct)
 
 
 def _spread(eigenvalues: ComplexArray, periods: FloatArray, lengths: FloatArray, nodes: int) -> ComplexArray:
@@ -139,6 +152,8 @@ def _spread(eigenvalues: ComplexArray, periods: FloatArray, lengths: FloatArray,
 @dataclass(frozen=True, eq=False)
 class ForcePanels:
     """Everything that does not depend on the load parameters; S systems, P panels, N nodes, p loads, n modes.
+
+    Systems with one value each have all of it but E and G multiplied by their parameters and summed.
 
     Attributes
     ----------
@@ -166,10 +181,16 @@ class ForcePanels:
         start: FloatArray,
         length: FloatArray,
         orders: int = 3,
+        parameters: FloatArray | None = None,
     ) -> ForcePanels:
-        """Set up the equations on panels of given starts and lengths, fractions of the period (P,)."""
+        """Set up the equations on panels of given starts and lengths, fractions of the period (P,).
+
+        Of systems with one value each the parameters are given, shape (3, S, p).
+        """
         _, weights, integration = gauss_rule(nodes)
         at = Nodes.of(systems, modes, nodes, start, length, orders)
+        if parameters is not None:
+            at, orders = at.loaded(parameters), 1
         systems_, count, p, n = len(systems), start.size, len(systems[0].loads), modes.size
         rows = (at.reading * at.spread[:, :, :, None, :]).reshape(orders, systems_, count, nodes * p, n)
         # Backwards they are their own inverses.
@@ -178,8 +199,8 @@ class ForcePanels:
         # Re Σ z β as one product of real matrices, their columns (Re, Im) and (Re, −Im) in turn.
         force_on_force = rows.view(float) @ columns.conj().view(float).swapaxes(-1, -2)
         force_on_force *= np.repeat(np.repeat(integration, p, axis=0), p, axis=1)
-        if orders > 2:
-            blocks = force_on_force[2].reshape(systems_, count, nodes, p, nodes, p)
+        if at.direct is not None:
+            blocks = force_on_force[-1].reshape(systems_, count, nodes, p, nodes, p)
             blocks[:, :, np.arange(nodes), :, np.arange(nodes), :] += np.moveaxis(at.direct, 2, 0)
 
         push = columns * at.half[:, :, None, :] * np.repeat(weights, p)[:, None]
@@ -196,12 +217,18 @@ class ForcePanels:
             input=np.concatenate([push.real, push.imag], axis=-1).swapaxes(-1, -2),
         )
 
-    def equations(self, parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def equations(self, parameters: FloatArray | None) -> tuple[FloatArray, FloatArray]:
         """Return both sides of the equations for the contact forces, (V, P, N p, N p) and (V, P, N p, 2n).
 
-        Parameters are stiffness, damping and mass of all loads, shape (3, V, p).
+        Parameters are stiffness, damping and mass of all loads, shape (3, V, p); none of systems that have one value
+        each.
         """
         size = self.input.shape[-1]
+        if parameters is None:
+            (left,), (right,) = self.force_on_force.copy(), self.force_on_state
+            number = np.arange(size)
+            left[..., number, number] += 1.0
+            return left, right
         count = parameters.shape[1]
         left = np.empty((count, *self.force_on_force.shape[2:]))
         right = np.empty((count, *self.force_on_state.shape[2:]))
@@ -217,7 +244,7 @@ class ForcePanels:
         left[..., number, number] += 1.0
         return left, right
 
-    def forces(self, parameters: FloatArray) -> FloatArray:
+    def forces(self, parameters: FloatArray | None) -> FloatArray:
         """Contact forces at the nodes of each panel, for unit modal coordinates at its start, (V, P, N p, 2n)."""
         return np.asarray(np.linalg.solve(*self.equations(parameters)), dtype=float)
 
@@ -276,7 +303,8 @@ def _at_instants(
         functions = functions[:1]
     if not functions[0]:
         return np.empty((1, *shape, 0, systems[0].size))
-    return np.stack([np.stack([values(function) for function in row], axis=-2) for row in functions])
+    found = {function: values(function) for function in {own for row in functions for own in row}}
+    return np.stack([np.stack([found[function] for function in row], axis=-2) for row in functions])
 
 
 @lru_cache(maxsize=64)
@@ -289,5 +317,8 @@ def mobilities(systems: Sequence[PeriodicSystem]) -> FloatArray:
     """Return the largest φᵀM⁻¹φ of each load, at sampled instants, shape (V, p)."""
     shapes = _at_instants(systems, lambda load: load.shape, _sampled, (_INSTANTS,))
     mass = np.stack([system.mass for system in systems])[:, None]
+    if (mass == mass[0]).all():
+        mass = mass[:1]
     moved = np.linalg.solve(mass, shapes.swapaxes(-1, -2)).swapaxes(-1, -2)
-    return np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
+    found = np.asarray((shapes * moved).sum(axis=-1).max(axis=1), dtype=float)
+    return np.broadcast_to(found, (len(systems), found.shape[1]))

@@ -124,6 +124,21 @@ class FreeModes:
         """Number of modes n."""
         return int(self.eigenvalues.shape[-1])
 
+    def of_some(self, places: NDArray[np.intp]) -> FreeModes:
+        """Return the modes of some of the systems, by their places along the first axis."""
+        return FreeModes(
+            *(
+                part[places]
+                for part in (
+                    self.eigenvalues,
+                    self.displacement,
+                    self.velocity,
+                    self.coordinates,
+                    self.input,
+                )
+            )
+        )
+
     def state_from_real(self) -> FloatArray:
         """Matrix from (Re y, Im y) to (q, q̇), shape (..., 2n, 2n)."""
         both = np.concatenate([self.displacement, self.velocity], axis=-2)
@@ -256,6 +271,11 @@ class HeldSystems:
             for system in systems
         ]
         return cls(held, FreeModes.of_all(held), np.full((len(systems), count), strength))
+
+    def some(self, places: NDArray[np.intp]) -> HeldSystems:
+        """Return some of the systems, by their places."""
+        systems = [self.systems[place] for place in places.tolist()]
+        return HeldSystems(systems, self.modes.of_some(places), self.springs[places])
 
 
 def _undamped(system: PeriodicSystem) -> tuple[FloatArray, float, FloatArray]:

@@ -133,19 +133,29 @@ def combination(system: PeriodicSystem, method: Method | None = None) -> Combina
         Of all pairs with Ω_a − Ω_b near a multiple of ω the one with the largest product of actions in the motion.
         "mean" if the mean system by itself grows at least half as fast.
     """
+    return growth_and_combination(system, method)[1]
+
+
+def growth_and_combination(system: PeriodicSystem, method: Method | None = None) -> tuple[float, Combination]:
+    """Return the growth rate [1/s] of a system as well as what :func:`combination` names it.
+
+    Parameters
+    ----------
+    system, method
+        As there.
+    """
     modes = _MeanModes.of(system)
-    matrix = transition_matrix(system, method)
-    values, vectors = np.linalg.eig(matrix)
+    values, vectors = np.linalg.eig(transition_matrix(system, method))
     critical = int(np.abs(values).argmax())
     growth = float(np.log(np.abs(values[critical]))) / system.period
     fastest = int(modes.eigenvalues.real.argmax())
     if growth > 0.0 and modes.eigenvalues[fastest].real >= 0.5 * growth:
         number = int(modes.numbers[fastest])
-        return Combination(number, number, "mean", 0)
+        return growth, Combination(number, number, "mean", 0)
     action = np.zeros(modes.eigenvalues.size)
     for state in _critical_motion(system, complex(values[critical]), vectors[:, critical], method):
         action += modes.action(state)
-    return _strongest_pair(modes, action, 2.0 * np.pi / system.period)
+    return growth, _strongest_pair(modes, action, 2.0 * np.pi / system.period)
 
 
 def moving_parts(system: PeriodicSystem, coordinates: Sequence[Coordinate]) -> tuple[str, ...]:
@@ -243,18 +253,14 @@ def _critical_state(system: PeriodicSystem, critical: complex, method: Method | 
 
 def _strongest_pair(modes: _MeanModes, action: FloatArray, frequency: float) -> Combination:
     """Pair of natural motions in step with one another that has the largest part in the motion."""
-    best, chosen = -1.0, Combination(0, 0, "mean", 0)
     oscillating = np.flatnonzero(modes.numbers > 0)
-    for a in oscillating.tolist():
-        for b in oscillating.tolist():
-            apart = float(modes.eigenvalues[a].imag - modes.eigenvalues[b].imag)
-            order = round(apart / frequency)
-            if order < 1:
-                continue
-            detuning = abs(apart / frequency - order) / _DETUNING
-            weight = float(np.sqrt(action[a] * action[b])) / (1.0 + detuning**2)
-            if weight > best:
-                k, j = sorted((int(modes.numbers[a]), int(modes.numbers[b])))
-                opposite = modes.eigenvalues[a].imag * modes.eigenvalues[b].imag < 0.0
-                best, chosen = weight, Combination(k, j, "sum" if opposite else "difference", order)
-    return chosen
+    turns, parts = modes.eigenvalues.imag[oscillating] / frequency, np.sqrt(action[oscillating])
+    apart = turns[:, np.newaxis] - turns
+    orders = np.round(apart)
+    weights = np.outer(parts, parts) / (1.0 + (np.abs(apart - orders) / _DETUNING) ** 2)
+    if not (orders >= 1.0).any():
+        return Combination(0, 0, "mean", 0)
+    a, b = np.unravel_index(int(np.where(orders >= 1.0, weights, -1.0).argmax()), weights.shape)
+    k, j = sorted(modes.numbers[oscillating[[a, b]]].tolist())
+    kind: Kind = "sum" if turns[a] * turns[b] < 0.0 else "difference"
+    return Combination(k, j, kind, int(orders[a, b]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,19 +37,26 @@ class LoadColumn:
     @classmethod
     def of(cls, system: PeriodicSystem) -> LoadColumn:
         """Return the one value of each parameter that a system has."""
-        return cls(
-            *(
-                np.array([[getattr(load, name) for load in system.loads]])
-                for name in ("mass", "damping", "stiffness")
-            )
-        )
+        return cls.of_all([system])
+
+    @classmethod
+    def of_all(cls, systems: Sequence[PeriodicSystem]) -> LoadColumn:
+        """Return the values that several systems with as many loads have, one of each."""
+        found = [[(load.mass, load.damping, load.stiffness) for load in system.loads] for system in systems]
+        values = np.array(found, dtype=float).reshape(len(systems), len(systems[0].loads), 3)
+        return cls(*np.moveaxis(values, 2, 0))
 
     def __len__(self) -> int:
         return int(self.mass.shape[0])
 
+    @property
+    def parts(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Mass, damping and stiffness, as the column is made of them."""
+        return self.mass, self.damping, self.stiffness
+
     def stacked(self) -> FloatArray:
         """All parameters, shape (V, 3 p)."""
-        return np.concatenate([self.mass, self.damping, self.stiffness], axis=1)
+        return np.concatenate(self.parts, axis=1)
 
     def extremes(self) -> LoadColumn:
         """Rows that hold the smallest and the largest of each parameter, and the middle one."""

@@ -11,19 +11,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import ClassVar, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
 from facegear.floquet import collocation
 from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.free_systems import FreeSystems
 from facegear.floquet.gauss_panels import within_reach
 from facegear.floquet.load_columns import LoadColumn
 from facegear.floquet.motion import MotionPanels
 from facegear.floquet.periodic import PeriodicSystem
-from facegear.floquet.stepping import Family, aligned_edges, gauss_magnus, midpoint
+from facegear.floquet.stepping import SHARED_STEPS, Family, aligned_edges, gauss_magnus, midpoint
 from facegear.support.parameters import integer_at_least, keep, within
 from facegear.support.types import FloatArray
 
@@ -32,6 +34,14 @@ T = TypeVar("T")
 
 class Method(Protocol):
     """A way to compute the Floquet transition matrix."""
+
+    @property
+    def together(self) -> float:
+        """Systems of different periods to hand over at once, at most: beyond, they differ too much for common steps.
+
+        Infinity where the method looks itself which of any number go together.
+        """
+        ...
 
     def scaled_transition_matrices(self, family: Family) -> FloatArray:
         """S Φ S⁻¹ of each system of a family, in its scaled coordinates, shape (V, 2n, 2n)."""
@@ -43,6 +53,17 @@ class Method(Protocol):
 
     def rounding(self, family: Family) -> float:
         """Return how much rounding entries of Φ gather on the way, in units of the last place of the largest one."""
+        ...
+
+
+@runtime_checkable
+class PreparesLoads(Protocol):
+    """A method that does once what systems which differ in their load parameters have in common."""
+
+    def along_loads(
+        self, system: PeriodicSystem, column: LoadColumn, scale: FloatArray
+    ) -> Callable[[LoadColumn], FloatArray]:
+        """Prepare a system for load parameters up to those of a column: S Φ S⁻¹ of any of them, (V, 2n, 2n)."""
         ...
 
 
@@ -59,6 +80,8 @@ class Stepwise:
     """
 
     sub_intervals: int
+
+    together: ClassVar[float] = SHARED_STEPS
 
     def __post_init__(self) -> None:
         keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
@@ -95,6 +118,8 @@ class AlignedStepwise:
 
     sub_intervals: int
 
+    together: ClassVar[float] = SHARED_STEPS
+
     def __post_init__(self) -> None:
         keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
 
@@ -125,6 +150,8 @@ class Magnus:
     """
 
     sub_intervals: int
+
+    together: ClassVar[float] = SHARED_STEPS
 
     def __post_init__(self) -> None:
         keep(self, sub_intervals=integer_at_least("sub_intervals", self.sub_intervals, 1))
@@ -160,6 +187,8 @@ class AdaptiveMagnus:
     """
 
     tolerance: float = 1e-10
+
+    together: ClassVar[float] = SHARED_STEPS
 
     def __post_init__(self) -> None:
         keep(self, tolerance=within("tolerance", self.tolerance, 1e-13, 1e-2))
@@ -243,6 +272,8 @@ class Collocation:
     panel_angle: float = collocation.DEFAULT_PANEL_ANGLE
     fewest_held: int = 1
 
+    together: ClassVar[float] = math.inf
+
     def __post_init__(self) -> None:
         keep(
             self,
@@ -261,14 +292,25 @@ class Collocation:
         )
         return np.asarray(family.scale @ matrices @ family.inverse_scale, dtype=float)
 
+    def along_loads(
+        self, system: PeriodicSystem, column: LoadColumn, scale: FloatArray
+    ) -> Callable[[LoadColumn], FloatArray]:
+        """See :class:`PreparesLoads`."""
+        motion = collocation.FreeMotion(
+            FreeSystems.of([system], column, self.fewest_held), self.nodes, self.panel_angle
+        )
+        to = scale @ motion.modes.state_from_real()[0]
+        back = motion.modes.real_from_state()[0] @ np.linalg.inv(scale)
+        return lambda part: np.asarray(to @ motion.transition_matrices(part) @ back, dtype=float)
+
     def motion_panels(self, system: PeriodicSystem, instants: Sequence[float]) -> MotionPanels:
         """See :class:`facegear.floquet.motion.FollowsMotion`.
 
         Panels are half as long: along them forces are known with the root of the accuracy of the ends only.
         """
         column = LoadColumn.of(system)
-        angle = self.panel_angle / 2.0
-        motion = collocation.FreeMotion([system], column, self.nodes, angle, instants, self.fewest_held)
+        free = FreeSystems.of([system], column, self.fewest_held)
+        motion = collocation.FreeMotion(free, self.nodes, self.panel_angle / 2.0, instants)
         return motion.motion_panels(column)
 
     def refined(self) -> Method:

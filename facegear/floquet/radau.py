@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -26,7 +26,7 @@ from facegear.floquet.gauss_panels import within_reach
 from facegear.floquet.motion import MotionPanels, known_forces
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import SAME_INSTANT, merge_breakpoints
-from facegear.floquet.stepping import Family
+from facegear.floquet.stepping import SHARED_STEPS, Family
 from facegear.support.parameters import integer_within, keep, within
 from facegear.support.types import FloatArray
 
@@ -88,6 +88,8 @@ class Radau:
 
     stages: int = 16
     tolerance: float = 1e-11
+
+    together: ClassVar[float] = SHARED_STEPS
 
     def __post_init__(self) -> None:
         keep(

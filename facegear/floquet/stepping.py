@@ -19,6 +19,8 @@ from facegear.support.types import ComplexArray, FloatArray
 _SQUARED_FROM = 0.3
 # Entries of the largest stack of matrices worked on at once: keeps memory near 100 MB, and small stacks in cache.
 _STACK_ENTRIES = 500_000
+#: Systems of different periods that share the steps of one of them, at most.
+SHARED_STEPS = 16
 
 # Fewer matrices than this are not worth another library, and larger ones keep BLAS busy.
 _FEWEST = 32

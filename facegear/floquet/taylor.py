@@ -21,7 +21,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from facegear.floquet.compiled import LANES, where_compiled
 from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.piecewise import same_function
-from facegear.floquet.stepping import Family, aligned_edges
+from facegear.floquet.stepping import SHARED_STEPS, Family, aligned_edges
 from facegear.support.parameters import keep, within
 from facegear.support.types import FloatArray
 
@@ -111,6 +111,8 @@ class Taylor:
 
     angle: float = 6.0
     tolerance: float = 1e-12
+
+    together: ClassVar[float] = SHARED_STEPS
 
     def __post_init__(self) -> None:
         # Larger terms would take digits with them when they cancel.

@@ -107,8 +107,8 @@ class UnloadedContact(ActionPath):
 
         Returns
         -------
-        ndarray, of the shape of `position`
-            0 at :attr:`position`; a slice is what has one local pressure angle q.
+        ndarray
+            Of the shape of `position`. 0 at :attr:`position`; a slice is what has one local pressure angle q.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Axes of a map: speeds and values of a parameter, checked."""
+"""Axes of a map: speeds and values of a parameter, checked, and the periods that go with speeds."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from facegear.floquet.models import Model
 from facegear.support.parameters import finite_array, rpm
 from facegear.support.types import FloatArray
 
@@ -52,6 +53,15 @@ def speed_coordinates(speeds: FloatArray) -> dict[str, Any]:
         "speed": ("speed", speeds, {"units": "rad/s", "long_name": "speed"}),
         "speed_rpm": ("speed", rpm(speeds), {"units": "rpm", "long_name": "speed"}),
     }
+
+
+def periods_at(model: Model, speeds: FloatArray) -> FloatArray:
+    """Periods T0 [s] of a model at speeds (S,) [rad/s]: in inverse proportion to them, if a few of them are."""
+    few = speeds[[0, speeds.size // 2, -1]]
+    turned = np.array([model.system(speed).period for speed in few.tolist()]) * few
+    if np.ptp(turned) <= 1e-12 * turned[0]:
+        return np.asarray(turned[0] / speeds)
+    return np.array([model.system(speed).period for speed in speeds.tolist()])
 
 
 def checked_values(values: ArrayLike) -> FloatArray:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from facegear.floquet.columns import LOWEST_DEGREE, LoadSweep, agree, of_one_size, resolved
 from facegear.floquet.eigenvalues import spectral_radii
@@ -153,8 +154,15 @@ class Cells:
         places = [slice(start, start + size) for start in range(0, len(self.systems), size)]
         return places, [_Chunk(self.systems[place], self.turns) for place in places]
 
-    def error_estimate(self, radii: FloatArray) -> float:
-        """Largest difference from shorter steps, and what rounding does, corner cells and middle cell."""
+    def some(self, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Cells:
+        """Return those of some values and speeds, by their numbers."""
+        return Cells(tuple(self.systems[row] for row in rows.tolist()), self.turns[columns])
+
+    def error_estimate(self, radii: FloatArray) -> float | None:
+        """Largest difference from shorter steps, and what rounding does, corner cells and middle cell.
+
+        None where there are too many shorter steps.
+        """
         last, end = radii.shape[0] - 1, radii.shape[1] - 1
         places = sorted({(v, s) for v in (0, last) for s in (0, end)} | {(last // 2, end // 2)})
         systems = [
@@ -163,7 +171,10 @@ class Cells:
         try:
             finer = _scaled(systems)
         except UnsuitableSystemError:  # not of one mass
-            finer = np.concatenate([_scaled([system]) for system in systems])
+            try:
+                finer = np.concatenate([_scaled([system]) for system in systems])
+            except UnsuitableSystemError:
+                return None
         differences = np.abs(spectral_radii(finer) - np.array([radii[place] for place in places]))
         pairs = zip(systems, finer, strict=True)
         rounding = [shift_by_rounding(matrix, Family([system]), _METHOD) for system, matrix in pairs]

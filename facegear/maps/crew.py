@@ -82,17 +82,22 @@ class Crew:
             _, _, name, function, arguments = heappop(self._waiting)
             self._running[self._executor.submit(on_one_thread, function, *arguments)] = name
 
-    def results(self) -> Iterator[tuple[Hashable, Any]]:
+    def results(
+        self, at_work: Callable[[list[Any]], object] = lambda names: None, every: float = 30.0
+    ) -> Iterator[tuple[Hashable, Any]]:
         """Give names and results of tasks as they are done, those included that are added meanwhile.
 
-        What a task raises is raised here.
+        What a task raises is raised here. Whenever so many seconds pass without a result `at_work` is called with the
+        names of the tasks that run.
         """
         while self._waiting or self._running:
             if self._jobs == 1:
                 _, _, name, function, arguments = heappop(self._waiting)
                 yield name, on_one_thread(function, *arguments)
                 continue
-            done, _ = wait(self._running, return_when=FIRST_COMPLETED)
+            done, _ = wait(self._running, every, FIRST_COMPLETED)
+            if not done:
+                at_work(list(self._running.values()))
             for future in done:
                 yield self._running.pop(future), future.result()
             self._begin()

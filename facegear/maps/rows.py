@@ -17,20 +17,18 @@ import numpy as np
 from facegear.floquet.columns import interpolated_spectral_radii
 from facegear.floquet.eigenvalues import spectral_radii
 from facegear.floquet.error_estimates import rounding_error
-from facegear.floquet.methods import Collocation, Method, with_method
+from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import Model, replace_at
 from facegear.floquet.multiplier_curves import FrozenMotions
 from facegear.floquet.multipliers import transition_matrices
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.sheets import FEWEST_SPEEDS, SHEET_TOLERANCE, windows
 from facegear.floquet.stepping import Family
+from facegear.maps.axes import periods_at
 from facegear.maps.likeness import same_layout
 from facegear.maps.parallel import parts_of
 from facegear.support.types import FloatArray
 
-# Matrices that are computed together: beyond these, periods differ too much for a common step. Collocation looks itself
-# which of any number go together.
-_TOGETHER = 16
 # Rows of at most so many speeds are computed cell by cell.
 _FEW = 64
 # Cells that are computed, and kept on disk, together, if two such rows have fewer.
@@ -130,7 +128,7 @@ def _radii(systems: list[PeriodicSystem], method: Method | None) -> FloatArray:
 def _row(model: Model, speeds: FloatArray, method: Method | None) -> FloatArray:
     """Spectral radii and periods of a model at speeds (S,), shape (2, S)."""
     slowness = 1.0 / speeds
-    periods = _periods(model, speeds)
+    periods = periods_at(model, speeds)
     planned: list[tuple[slice, int]] = []
     if speeds.size >= FEWEST_SPEEDS:
         planned = windows(FrozenMotions.of(model, slowness[-1], slowness[0]), speeds)
@@ -157,16 +155,6 @@ def _row(model: Model, speeds: FloatArray, method: Method | None) -> FloatArray:
     return np.stack([with_method(method, radii), periods])
 
 
-def _periods(model: Model, speeds: FloatArray) -> FloatArray:
-    """T0 [s], (S,)."""
-    few = speeds[[0, speeds.size // 2, -1]]
-    turned = np.array([model.system(speed).period for speed in few.tolist()]) * few
-    if np.ptp(turned) <= 1e-12 * turned[0]:
-        return np.asarray(turned[0] / speeds)
-    # Not in inverse proportion to speed.
-    return np.array([model.system(speed).period for speed in speeds.tolist()])
-
-
 def _matrices(model: Model, slowness: FloatArray, method: Method) -> FloatArray:
     """Transition matrices at values of slowness (K,), shape (K, d, d)."""
     systems = [model.system(speed) for speed in (1.0 / slowness).tolist()]
@@ -175,10 +163,9 @@ def _matrices(model: Model, slowness: FloatArray, method: Method) -> FloatArray:
 
 def _alike(systems: list[PeriodicSystem], method: Method) -> Iterator[list[PeriodicSystem]]:
     """Neighbours with the same loads and breakpoints, few enough for the method to take together."""
-    most = len(systems) if isinstance(method, Collocation) else _TOGETHER
     start = 0
     for number, system in enumerate(systems):
-        if number - start == most or not same_layout(systems[start], system):
+        if number - start == method.together or not same_layout(systems[start], system):
             yield systems[start:number]
             start = number
     yield systems[start:]

@@ -8,7 +8,7 @@ Where the parameter counts something, or moves the instants at which the load be
 instead: at one value, transition matrices are smooth functions of speed alone.
 
 Cells of small systems of which speed changes nothing but the period, as gearboxes, are computed one by one, many at a
-time (:mod:`facegear.maps.cells`).
+time (:mod:`facegear.maps.cells`). By which of these a map goes says :mod:`facegear.maps.ways`.
 
 What falls between the columns of a map, tongues narrower than their distance, is found by
 :func:`facegear.maps.tracing.tongues`.
@@ -17,18 +17,14 @@ What falls between the columns of a map, tongues narrower than their distance, i
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from importlib.metadata import version
-from typing import Literal
 
 import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
 from facegear.floquet.error_estimates import rounding_shift
-from facegear.floquet.free_modes import UnsuitableSystemError
 from facegear.floquet.methods import Method, with_method
 from facegear.floquet.models import (
     Model,
@@ -37,12 +33,10 @@ from facegear.floquet.models import (
 )
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.maps.axes import checked_speeds, checked_values, require_cells, speed_coordinates
-from facegear.maps.cells import cells_of
-from facegear.maps.map_columns import Columns, columns_of, spectral_radius
-from facegear.maps.map_sheets import laid_out
+from facegear.maps.map_columns import spectral_radius
 from facegear.maps.parallel import Task, Workers, computed
-from facegear.maps.rows import in_rows
 from facegear.maps.sweep import Sweep
+from facegear.maps.ways import Way
 from facegear.support.parameters import number_of_workers
 from facegear.support.types import FloatArray
 
@@ -118,7 +112,11 @@ def stability_map(
     def run(tasks: Sequence[Task], description: str, prefer: Workers) -> Iterator[tuple[int, FloatArray]]:
         return computed(tasks, description, jobs, progress, cache_directory, prefer)
 
-    radii, periods, error = _by_cell(sweep, speeds, run) or _by_column_or_row(sweep, speeds, run)
+    way = Way.of(sweep, speeds)
+    radii, periods, by_cells = way.radii(run)
+    error = way.cells.error_estimate(radii) if by_cells and way.cells is not None else None
+    if error is None:
+        error = _error_estimate(sweep, speeds, radii)
 
     return xarray.DataArray(
         np.log(radii) / periods,
@@ -138,110 +136,6 @@ def stability_map(
             "facegear_version": version("facegear"),
         },
     )
-
-
-Way = Literal["cells", "loads", "columns", "rows"]
-"""What :func:`stability_map` goes by; "loads" are columns along which nothing else changes, the cheapest."""
-
-
-def way_of(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> Way:
-    """Find by what :func:`stability_map` goes, for who wants a map in parts; rows may be those of low speeds alone.
-
-    Parameters
-    ----------
-    model : Model
-    speeds : ndarray, shape (S,)
-    parameter : str
-    values : ndarray, shape (V,)
-        As for :func:`stability_map`.
-    """
-    sweep = Sweep(model, parameter, tuple(values.tolist()), None)
-    if cells_of(sweep.models, sweep.probes, speeds) is not None:
-        return "cells"
-    columns = columns_of(sweep, speeds)
-    if columns is None or columns.smooth_from(speeds) > 0:
-        return "rows"
-    return "columns" if columns.loads is None else "loads"
-
-
-_Run = Callable[[Sequence[Task], str, Workers], Iterator[tuple[int, FloatArray]]]
-
-
-def _by_cell(sweep: Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray, float] | None:
-    """Spectral radii and periods, (V, S), and an estimate of the error, of small systems that speed only turns."""
-    cells = None if sweep.method is not None else cells_of(sweep.models, sweep.probes, speeds)
-    if cells is None:
-        return None
-    radii = np.empty((len(sweep.values), speeds.size))
-    places, tasks = cells.tasks()
-    for number, result in run(tasks, "stability map", "threads"):
-        radii[places[number]] = result
-    periods, left = cells.periods, np.flatnonzero(np.isnan(radii[:, 0]))
-    if left.size == len(sweep.values):
-        return None
-    if left.size:
-        others = replace(sweep, values=tuple(sweep.values[row] for row in left.tolist()))
-        radii[left], periods[left] = _by_row(others, speeds, run)
-    else:
-        with suppress(UnsuitableSystemError):  # shorter steps may be too many
-            return radii, periods, cells.error_estimate(radii)
-    return radii, periods, _error_estimate(sweep, speeds, radii)
-
-
-def _by_column_or_row(sweep: Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray, float]:
-    """As :func:`_by_cell`, of any models."""
-    columns = columns_of(sweep, speeds)
-    # By rows below that speed, by columns from it on.
-    start = speeds.size if columns is None else columns.smooth_from(speeds)
-    parts = []
-    if start > 0:
-        parts.append(_by_row(sweep, speeds[:start], run))
-    if columns is not None and start < speeds.size:
-        parts.append(_by_column(columns, speeds[start:], run))
-    radii, periods = (np.concatenate(part, axis=1) for part in zip(*parts, strict=True))
-    return radii, periods, _error_estimate(sweep, speeds, radii)
-
-
-def _by_row(sweep: Sweep, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray]:
-    """Spectral radii and periods, (V, S), row by row."""
-    found = np.empty((2, len(sweep.values), speeds.size))
-    rows = in_rows(sweep.model, sweep.path, sweep.values, speeds, sweep.method)
-    places, tasks = zip(*rows, strict=True)
-    for number, result in run(tasks, "stability map", "processes"):
-        found[:, places[number]] = result
-    return found[0], found[1]
-
-
-def _by_column(columns: Columns, speeds: FloatArray, run: _Run) -> tuple[FloatArray, FloatArray]:
-    """Spectral radii and periods, (V, S), column by column."""
-    radii = np.empty((len(columns.sweep.values), speeds.size))
-    chunks, sheets = laid_out(columns, speeds)
-    samples_of = [sample for sheet in sheets for sample in sheet.samples]
-    found: dict[int, FloatArray] = {}
-    # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
-    prefer: Workers = "processes" if columns.loads is None else "threads"
-    for number, result in run([*chunks, *samples_of], "stability map", prefer):
-        if number < len(chunks):
-            radii[:, chunks[number].place] = result
-        else:
-            found[number - len(chunks)] = result
-    results = iter([found[number] for number in range(len(samples_of))])
-    cells = [chunk for sheet in sheets for chunk in sheet.chunks([next(results) for _ in sheet.samples])]
-    # On sheets all is linear algebra, of whatever models.
-    for number, result in run(cells, "cells on sheets", "threads"):
-        radii[:, cells[number].place] = result
-    return radii, _periods(columns.sweep, speeds, columns.turned)
-
-
-def _periods(sweep: Sweep, speeds: FloatArray, turned: FloatArray) -> FloatArray:
-    """T0 [s] of each cell, (V, S), from the angle by which it turns in it: the parameter may be a number of teeth."""
-    for probe, model in zip(sweep.probes, sweep.probed, strict=True):
-        for speed in (float(speeds[speeds.size // 2]), float(speeds[-1])):
-            period = model.system(speed).period
-            if abs(period * speed - turned[probe]) > 1e-12 * turned[probe]:
-                # Not in inverse proportion to speed.
-                return np.array([[m.system(v).period for v in speeds.tolist()] for m in sweep.models])
-    return np.asarray(turned[:, np.newaxis] / speeds, dtype=float)
 
 
 def _error_estimate(sweep: Sweep, speeds: FloatArray, radii: FloatArray) -> float:

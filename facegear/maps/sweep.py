@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from facegear.floquet.methods import Method
 from facegear.floquet.models import (
@@ -76,6 +77,12 @@ class Sweep:
         """
         found = self.load_parameters([model.system(speed) for model in self.probed])
         return found is not None and np.array_equal(found, loads[list(self.probes)])
+
+    def some(self, numbers: NDArray[np.intp]) -> Sweep:
+        """Return the sweep of some of the values, by their numbers; models that have been built are shared."""
+        part = replace(self, values=tuple(self.values[number] for number in numbers.tolist()))
+        part._built.update(self._built)
+        return part
 
     @property
     def description(self) -> str:

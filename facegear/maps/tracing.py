@@ -12,19 +12,19 @@ from dataclasses import dataclass, field, replace
 from typing import Any, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
-from scipy.optimize import brentq
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize.elementwise import find_root
 
-from facegear.floquet.labels import Combination, Kind, combination
+from facegear.floquet.labels import Combination, Kind, growth_and_combination
 from facegear.floquet.methods import Method
 from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
 from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
-from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.rigid_motion import rigid_motions
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
-from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, SPEED_TOLERANCE, Scan, scan_of
+from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, scan_of
+from facegear.maps.scans import SPEED_TOLERANCE, Scan
 from facegear.support.parameters import ascending, finite_array, number_of_workers, within
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
@@ -317,24 +317,32 @@ def _missing(found: Sequence[tuple[Tongue, ...]], number: int) -> list[float]:
 
 def _runs(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[tuple[float, float, float]]:
     """Lower border, upper border and peak of every run of unstable samples."""
-
-    def level(speed: float) -> float:
-        return float(curve.spectral_radii(np.array([speed]))[0]) - 1.0 - threshold
-
-    def border(first: int, second: int) -> float:
-        return float(
-            brentq(level, scan.speeds[first], scan.speeds[second], xtol=SPEED_TOLERANCE * curve.lowest_speed)
+    unstable = np.concatenate([[False], scan.radii > 1.0 + threshold, [False]])
+    # Samples with which runs begin, and those after their ends.
+    edges = np.flatnonzero(unstable[1:] != unstable[:-1])
+    speeds = np.where(edges == 0, curve.lowest_speed, curve.highest_speed)
+    inner = (edges > 0) & (edges < scan.speeds.size)
+    speeds[inner] = _borders(curve, scan, edges[inner], threshold)
+    return [
+        (lower, upper, _peak(curve, scan.between(start, stop), lower, upper))
+        for (lower, upper), (start, stop) in zip(
+            speeds.reshape(-1, 2).tolist(), edges.reshape(-1, 2).tolist(), strict=True
         )
+    ]
 
-    unstable = scan.radii > 1.0 + threshold
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], unstable, [False]]).astype(int)))
-    runs = []
-    last = scan.speeds.size - 1
-    for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        lower = border(start - 1, start) if start > 0 else curve.lowest_speed
-        upper = border(stop - 1, stop) if stop <= last else curve.highest_speed
-        runs.append((lower, upper, _peak(curve, scan.between(start, stop), lower, upper)))
-    return runs
+
+def _borders(curve: MultiplierCurve, scan: Scan, places: NDArray[np.intp], threshold: float) -> FloatArray:
+    """Speeds where growth passes the threshold between samples with some numbers and those before them."""
+    if places.size == 0:
+        return np.empty(0)
+    found = find_root(
+        lambda speeds: curve.spectral_radii(speeds) - 1.0 - threshold,
+        (scan.speeds[places - 1], scan.speeds[places]),
+        tolerances={"xatol": SPEED_TOLERANCE * curve.lowest_speed},
+    )
+    if not found.success.all():
+        raise ArithmeticError(f"no border was found near {scan.speeds[places[~found.success]]} rad/s")
+    return np.asarray(found.x, dtype=float)
 
 
 def _peak(curve: MultiplierCurve, inside: Scan, lower: float, upper: float) -> float:
@@ -377,6 +385,4 @@ def _bounds(inside: Scan, ends: FloatArray) -> FloatArray:
 
 
 def _tongue(model: Model, method: Method, lower: float, upper: float, peak: float) -> Tongue:
-    system = model.system(peak)
-    growth = float(np.log(np.abs(multipliers(system, method)[0])) / system.period)
-    return Tongue(lower, upper, peak, growth, combination(system, method))
+    return Tongue(lower, upper, peak, *growth_and_combination(model.system(peak), method))

@@ -242,9 +242,11 @@ class MeshOscillator(PinionsOnDisk):
         """
         speed = positive("speed", speed, "rad/s")
         count, scale = len(self.pinion_angles), modal_mass(self.body)
-        damping, stiffness = (np.pad(matrix, (0, count)) for matrix in self.disk_matrices(speed))
-        mass = np.eye(len(stiffness))
-        pinions = slice(len(mass) - count, None)
+        disk = self.disk_matrices(speed)
+        size = len(disk[0])
+        mass, damping, stiffness = np.eye(size + count), *np.zeros((2, size + count, size + count))
+        damping[:size, :size], stiffness[:size, :size] = disk
+        pinions = slice(size, None)
         own = (self.pinion_mass, self.bearing_damping, self.bearing_stiffness)
         for matrix, value in zip((mass, damping, stiffness), own, strict=True):
             matrix[pinions, pinions] = value / scale * np.eye(count)

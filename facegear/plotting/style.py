@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, ParamSpec, TypeVar
 
@@ -10,9 +11,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib import rcsetup
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+from matplotlib.ticker import FixedFormatter
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -51,15 +55,51 @@ _SETTINGS = {
 }
 
 
+# A hyphen before a number, where no word, formula or other number ends.
+_HYPHEN = re.compile(r"(?<![\w$\\{}^.)\]-])-(?=[\d.])")
+
+
 def styled(draw: Callable[P, R]) -> Callable[P, R]:
-    """Run a drawing function under the book's settings, leaving Matplotlib's own as they were."""
+    """Run a drawing function under the book's settings, leaving Matplotlib's own as they were.
+
+    Numbers in the texts of a figure that it returns have a minus sign, as those that Matplotlib writes itself.
+    """
 
     @functools.wraps(draw)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> R:
         with mpl.rc_context(_SETTINGS):  # type: ignore[arg-type]
-            return draw(*args, **kwargs)
+            drawn = draw(*args, **kwargs)
+            if isinstance(drawn, Figure):
+                _write_minus_signs(drawn)
+            return drawn
 
     return wrapper
+
+
+def with_minus_signs(text: str) -> str:
+    """Write a minus sign for the hyphen before a number; formulas, which have theirs, are left alone.
+
+    Examples
+    --------
+    >>> with_minus_signs("-0.25 at (1-8), 1e-05") == "\N{MINUS SIGN}0.25 at (1-8), 1e-05"
+    True
+    """
+    parts = text.split("$")
+    # Without a second dollar sign the first one is a dollar sign.
+    formulas = len(parts) % 2 == 1
+    return "$".join(
+        part if formulas and number % 2 else _HYPHEN.sub("\N{MINUS SIGN}", part)
+        for number, part in enumerate(parts)
+    )
+
+
+def _write_minus_signs(figure: Figure) -> None:
+    for text in figure.findobj(Text):
+        text.set_text(with_minus_signs(text.get_text()))
+    for axis in figure.findobj(Axis):
+        for formatter in (axis.get_major_formatter(), axis.get_minor_formatter()):
+            if isinstance(formatter, FixedFormatter):
+                formatter.seq = [with_minus_signs(label) for label in formatter.seq]
 
 
 def panels(rows: int = 1, columns: int = 1, height: float = 4.0, **options: Any) -> tuple[Figure, list[Axes]]:

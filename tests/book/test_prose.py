@@ -43,7 +43,7 @@ def test_readme_has_the_shares_of_the_stored_maps() -> None:
         for name in ("figure", "geometric")
     ]
     said = re.search(
-        r"\bit (\S+) % of the map of Fig. 4.4\(a\) are unstable,[^%]*?(\S+) %",
+        r"\bit (\S+) % of the map of Fig. 4.4\(a\) is unstable,[^%]*?(\S+) %",
         (ROOT / "README.md").read_text(),
     )
     assert said is not None

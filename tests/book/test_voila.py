@@ -17,6 +17,7 @@ import pytest
 from playwright.sync_api import Page, Playwright, Route
 
 from facegear.drives.drive_file import read_drive_file
+from facegear.drives.live import READY
 
 pytestmark = [pytest.mark.book, pytest.mark.takes(30)]
 
@@ -36,8 +37,9 @@ def free_port() -> int:
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Start Voilà as `make explorer` does and wait until it answers."""
+    assert f"notebooks/explorer.ipynb {' '.join(READY)}" in (ROOT / "Makefile").read_text(encoding="utf-8")
     port = free_port()
-    command = [sys.executable, "-m", "voila", "notebooks/explorer.ipynb", "--no-browser"]
+    command = [sys.executable, "-m", "voila", "notebooks/explorer.ipynb", *READY, "--no-browser"]
     command += [f"--port={port}", "--Voila.ip=127.0.0.1"]
     log = tmp_path_factory.mktemp("voila") / "log.txt"
     with log.open("w", encoding="utf-8") as messages:

@@ -134,7 +134,7 @@ def test_reasons_are_given_only_where_there_is_no_row():
 def test_equations_that_are_not_compared_say_why_or_show():
     text = contents.equations_as_markdown(CONTENTS, [about("(2-4)"), about("(2-7) to (2-8)")])
     lines = text.splitlines()
-    assert lines[0] == "Of 132 numbered equations 3 are named by a row of the ledger."
+    assert lines[0] == "Of 133 numbered equations 3 are named by a row of the ledger."
     assert "| (2-5), (2-6) | Define the transition matrix. |" in lines
     assert lines[-1].startswith("| (2-10), (2-11), (2-19), ")
     assert lines[-1].endswith(" | **not compared yet** |")

@@ -24,7 +24,10 @@ def written(figure):
 def test_every_number_is_where_it_belongs(what):
     data = labelled.load(STORED / "ch07_design_levers.nc")
     values = data[what].values
-    expected = {(i, j): f"{values[i, j]:.2f}".replace("-0.00", "0.00") for i, j in np.ndindex(*values.shape)}
+    expected = {
+        (i, j): f"{values[i, j]:.2f}".replace("-0.00", "0.00").replace("-", "−")
+        for i, j in np.ndindex(*values.shape)
+    }
     assert written(draw.levers(data, SYMBOLS, what)) == expected
 
 
@@ -35,7 +38,7 @@ def test_what_is_not_there_is_a_dot_and_long_numbers_are_cut():
     )
     figure = draw.levers(data, ("x", "y", "z"), "growth_change")
     assert written(figure) == {
-        (0, 0): "·", (0, 1): "0.00", (0, 2): "12.3", (1, 0): "-123", (1, 1): "9.88", (1, 2): "0.00"
+        (0, 0): "·", (0, 1): "0.00", (0, 2): "12.3", (1, 0): "−123", (1, 1): "9.88", (1, 2): "0.00"
     }  # fmt: skip
     assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["a: (1+1)/1", "b: (1+2)/1"]
 
@@ -46,5 +49,5 @@ def test_quantities_are_the_rows_of_a_chart_of_arrows():
         coords={"quantity_name": ("quantity", ["mass", "stress"])},
     )
     figure = draw.arrows(data, ("x", "y"))
-    assert written(figure) == {(0, 0): "1.00", (0, 1): "0.50", (1, 0): "-2.00", (1, 1): "3.00"}
+    assert written(figure) == {(0, 0): "1.00", (0, 1): "0.50", (1, 0): "−2.00", (1, 1): "3.00"}
     assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == ["mass", "stress"]

@@ -1,5 +1,7 @@
 """Figures of chapter 7 draw what they are given."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -45,3 +47,15 @@ def test_maps_show_traced_borders_and_names(name, band):
     drawn = np.concatenate([np.asarray(line.get_xdata(), dtype=float) for line in figure.axes[0].lines])
     assert np.isclose(drawn, lower).any()
     assert figure.axes[0].get_yscale() == FIGURES[name].scale
+
+
+def test_names_of_tongues_do_not_touch_one_another():
+    chart = arrays.stability_figure(FIGURES["7.12b"], columns=20, rows=3, sections=4, jobs=1)
+    figure = draw.stability_maps({"a title": chart})
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert len(boxes) > 4
+    boxes.sort(key=lambda box: box.x0)
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
+    assert max(box.y1 for box in boxes) < axes._left_title.get_window_extent().y0

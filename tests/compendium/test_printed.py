@@ -154,7 +154,7 @@ def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
     assert "| 231.94 mm | 231.9388 mm | reproduced |" in table[2]
     assert "| 282 mm | 283.04 mm | differs |" in table[3]
     assert "| stated | holds |" in table[4]
-    assert "| 231.94 mm | - |" in table[5]
+    assert "| 231.94 mm | – |" in table[5]
     assert ledger_tables.counts_as_markdown({3: rows}).splitlines()[2] == "| 3 | 1 | 1 | 1 | 1 | 4 | 1 |"
     assert (
         ledger_tables.counts_as_markdown({3: rows}).splitlines()[3] == "| **all** | 1 | 1 | 1 | 1 | 4 | 1 |"
@@ -162,6 +162,8 @@ def test_tables_show_every_row_with_two_more_digits_than_printed(tmp_path):
     (remark,) = [line for line in ledger_tables.remarks_as_markdown(rows).splitlines() if "282" in line]
     assert "282 mm | To every digit." in remark
     assert remark.endswith(": 283.04 mm |")
+    last = ledger_tables.remarks_as_markdown(rows).splitlines()[-1]
+    assert last.endswith(f"{rows[-1].printed.how} |")  # nothing was computed, and nothing stands for it
 
 
 def test_a_bar_in_a_cell_does_not_end_it():

@@ -347,6 +347,7 @@ def test_the_page_shows_hostile_names_as_text(tmp_path):
         "Tolerances",
         "Dynamic load",
         "Left out",
+        "Words",
     ]
     page = write_assessment(found, tmp_path / "out").read_text(encoding="utf-8")
     read = Reader(page)
@@ -453,7 +454,7 @@ def test_the_first_verdict_says_so_if_there_is_none(monkeypatch):
     def fails(*args, **options):
         raise ArithmeticError("it does not converge")
 
-    monkeypatch.setattr("facegear.drives.assess.tongues", fails)
+    monkeypatch.setattr("facegear.drives.assess.found_around", fails)
     said, crew = [], Recorder()
     _Found(CASE_1, 0.02, 1, said.append).begin(crew)
     assert said == [
@@ -499,3 +500,24 @@ def test_models_are_those_of_the_report_and_of_single_searches(tmp_path):
     assert all(each.data is not None or each.reason for each in found.disk_responses)
     page = write_assessment(found, tmp_path).read_text(encoding="utf-8")
     assert "Depends on" in page or "under all" in page
+
+
+def test_of_play_and_a_damaged_tooth_it_says_who_has_them():
+    file = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
+    words = assessment(
+        outcome("Tregold", DEAD, RIGID), file=replace(file, play=None, cracked=None)
+    ).not_varied
+    assert "facegear report" not in words
+    both = replace(file, play=object(), cracked=object())
+    words = assessment(outcome("Tregold", DEAD, RIGID), file=both).not_varied
+    assert "in their play and the damaged tooth see `facegear report`" in words
+
+
+def test_what_is_at_work_is_told_in_words():
+    said = []
+    found = _Found(CASE_1, 0.02, 1, said.append)
+    found.at_work([("case", 0), ("torsion", "Tregold, arm as printed"), ("worst", TORSION), ("disk", (0, 0))])
+    assert said == [
+        f"at work: {found.cases[0].name}; torsion, Tregold, arm as printed; values in tolerances, torsion; "
+        "dynamic load of the disk"
+    ]

@@ -6,9 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from facegear.drives.basis import disagreement, settled_tongues, unstable_share, with_basis
-from facegear.drives.drive_file import read_drive_file
+from facegear.drives import basis
+from facegear.drives.basis import (
+    BasisStep,
+    SettledTongues,
+    disagreement,
+    settled_tongues,
+    unstable_share,
+    with_basis,
+)
+from facegear.drives.drive_file import parse_drive, read_drive_file
+from facegear.drives.variants import plain_contacts
+from facegear.drives.verdict import driven
 from facegear.floquet.labels import Combination
+from facegear.floquet.multipliers import growth_rate
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.support.parameters import rad_per_s
@@ -108,8 +119,46 @@ class TestSettledTongues:
         quiet = (float(rad_per_s(960.0)), float(rad_per_s(990.0)))
         found = settled_tongues(CASE_1, quiet, most_steps=3)
         assert found.settled
-        assert [(step.nodal_circles, step.nodal_diameters) for step in found.steps] == [(1, 3), (1, 5)]
         assert found.steps[-1].moved == 0.0
+
+    def test_a_tongue_beside_a_narrow_range_that_comes_nearer_asks_for_more(self):
+        # Nothing is unstable here with up to seven nodal diameters; with nine it is all of it.
+        file = parse_drive(
+            "name: fourteen teeth\n"
+            "gears: {pinion_teeth: 14, gear_teeth: 23, module_mm: 5, shaft_angle_deg: 110, pressure_angle_deg: 20}\n"
+            "body: {thickness_ratio: 0.02, bore_radius_mm: 15}\n"
+            "pinions: {stiffness: 0.2, damping_us: 0.5, mass: 1, angles_deg: [0]}\n"
+            "operation: {lowest_speed_rpm: 2764, highest_speed_rpm: 2770, power_kW: 1, pinion_speed_rpm: 6000}\n"
+        )
+        model, speeds = driven(file, "dead", plain_contacts(file)["true sweep"]), file.requirements.speeds
+        few = settled_tongues(model, speeds, most_steps=2)
+        assert [step.tongues for step in few.steps] == [(), ()]
+        assert not few.settled
+        assert growth_rate(with_basis(model, 2, 9).system(sum(speeds) / 2.0)) > 0.0
+
+    def test_a_border_outside_of_the_range_may_move_on_and_uncover_or_cover_it(self):
+        narrow = (10.0, 10.1)
+        for before, found, stands in (
+            ((interval(11.0, 12.0),), (interval(10.5, 12.0),), False),  # comes from above
+            ((interval(11.0, 12.0),), (interval(10.9, 12.0),), True),
+            ((interval(8.0, 9.0),), (interval(8.0, 9.6),), False),  # from below
+            ((interval(9.0, 13.0),), (interval(9.0, 11.0),), False),  # uncovers it
+            ((interval(9.0, 11.1),), (interval(9.0, 11.0),), True),
+            # What comes from one side does not make up for what goes.
+            ((interval(9.0, 13.0),), (interval(9.0, 11.0), interval(12.0, 13.0)), False),
+            ((), (interval(12.0, 13.0),), False),
+            ((), (), True),
+        ):
+            assert basis._stands_still(before, found, narrow, 0.02) is stands
+
+    def test_growth_that_moves_is_told(self):
+        steps = tuple(
+            BasisStep(1, n, (replace(interval(1, 2), growth_rate=rate),), 0.0)
+            for n, rate in ((3, 5.0), (5, 4.0))
+        )
+        found = SettledTongues(CASE_1, (1.0, 3.0), steps, settled=True)
+        assert found.growth_moved == pytest.approx(0.25)
+        assert np.isnan(replace(found, steps=steps[:1]).growth_moved)
 
     @pytest.mark.slow
     def test_the_largest_basis_is_the_end(self):

@@ -80,7 +80,8 @@ def test_the_key_of_a_file_and_its_place_in_the_report():
     page = torsion(Findings(narrow, cells=2, jobs=1)).as_html()
     assert "What a damaged tooth would show" in page
     with pytest.raises(
-        DriveFileError, match=r"gearbox.damaged_tooth_percent must be 0 beside lengths of shafts"
+        DriveFileError,
+        match=r"gearbox.damaged_tooth_percent must be 0 beside gearbox.input_length_mm = 100 mm.*got 20",
     ):
         parse_drive(text.replace("gearbox:\n", "gearbox:\n  input_length_mm: 100\n"))
     with pytest.raises(DriveFileError, match=r"gearbox.damaged_tooth_percent must .*got 100"):

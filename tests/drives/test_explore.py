@@ -11,7 +11,9 @@ from facegear.drives.studies.drive import drive_study
 from facegear.drives.studies.gearbox import gearbox_study
 from facegear.drives.studies.oscillator import SQUARE as SQUARE_WAVE
 from facegear.drives.studies.oscillator import oscillator_study
-from facegear.maps.stability_map import stability_map, way_of
+from facegear.maps.stability_map import stability_map
+from facegear.maps.sweep import Sweep
+from facegear.maps.ways import Way
 from facegear.mechanics import cases
 from facegear.mechanics.classical import Meissner, meissner_trace
 from facegear.support.parameters import rad_per_s
@@ -75,7 +77,8 @@ def test_a_slow_map_has_every_second_row_when_half_of_it_is_final():
 def test_what_a_map_goes_by(study, vertical, way):
     settings, quantity = study.settings(), study.swept(vertical)
     speeds, values = study.axes(settings, vertical)
-    assert way_of(study.model(settings), speeds, quantity.parameter, values) == way
+    sweep = Sweep(study.model(settings), quantity.parameter, tuple(values.tolist()), None)
+    assert Way.of(sweep, speeds).name == way
 
 
 @pytest.mark.parametrize("parameter", ["thickness_ratio", "power"])

@@ -9,7 +9,8 @@ import pytest
 from facegear.drives import tolerance_cells as module
 from facegear.drives.intervals import cut, united
 from facegear.drives.tolerance_cells import BoxSearch, Cell
-from facegear.maps.tracing import tongues
+from facegear.floquet.labels import Combination
+from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.classical import Mathieu
 
 DAMPING_RATIO = 0.01
@@ -154,3 +155,14 @@ def test_cells_are_halved_at_the_values_of_the_file_first(part):
     assert (lower.lower, lower.upper) == ((1.0 - part, 0.95), (1.0, 1.05))
     assert (upper.lower, upper.upper) == ((1.0, 0.95), (1.0 + part, 1.05))
     assert cell.reach == pytest.approx(math.sqrt((1.0 + part) / (1.0 - part)), rel=1e-15)
+
+
+def test_a_value_that_was_looked_at_in_a_part_of_the_range_says_so():
+    search = BoxSearch(None, {"stiffness": 0.1}, (10.0, 20.0))
+    one, other = (Tongue(low, low + 1.0, low, 1.0, Combination(1, 1, "sum", 1)) for low in (12.0, 17.0))
+    search._keep((1.1,), (one,), (11.0, 14.0))
+    search._keep((1.1,), (other,), (16.0, 25.0))
+    assert search.points[1.1,] == (one, other)
+    assert search.looked_at[1.1,] == ((11.0, 14.0), (16.0, 20.0))
+    search._keep((0.9,), (one,), (9.0, 21.0))
+    assert search.looked_at[0.9,] == ((10.0, 20.0),)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from facegear.drives import tolerance_cells as module
+from facegear.drives import basis
 from facegear.drives.drive_file import DriveFileError, parse_drive, read_drive_file
 from facegear.drives.intervals import united
 from facegear.drives.tolerances import Toleranced, TolerancedGearbox, Tolerances
@@ -209,6 +209,12 @@ def test_a_tongue_that_stands_nowhere_but_inside_the_range_of_stiffness_is_found
     found = worst_case_in_torsion(model, speeds, Tolerances(stiffness=0.4))
     assert found.share == pytest.approx(1.0, abs=1e-12)
     assert found.fastest[0][0] == pytest.approx(1.2, abs=0.05)
+    # What stands at a value is told of the speeds that were looked at there.
+    assert found.looked_at.keys() == found.points.keys()
+    for factors, parts in found.looked_at.items():
+        assert all(
+            any(low <= t.lower and t.upper <= high for low, high in parts) for t in found.points[factors]
+        )
     (tongue,) = tongues(TolerancedGearbox(model, 1.21), speeds)
     assert found.fastest[1].growth_rate > 0.7 * tongue.growth_rate > 0.03
 
@@ -223,7 +229,7 @@ def test_a_value_at_which_multipliers_are_known_less_well_does_not_leave_all_unk
             raise ArithmeticError("multipliers are known to 5e-08 only")
         return tongues(model, around, threshold=threshold, progress=progress)
 
-    monkeypatch.setattr(module, "tongues", roughly)
+    monkeypatch.setattr(basis, "tongues", roughly)
     found = worst_case_in_torsion(GEARBOX.torsional, speeds, Tolerances(shaft_stiffness=0.1))
     monkeypatch.undo()
     # With all of the damping and with half of it.

@@ -24,15 +24,19 @@ from benchmarks.synthetic_disk import (
     synthetic_disk,
     synthetic_shafts,
 )
-from facegear.floquet.collocation import chain, transition_matrices, transition_matrices_to
+from facegear.floquet.collocation import FreeMotion, chain, transition_matrices, transition_matrices_to
 from facegear.floquet.columns import column_spectral_radii, family_spectral_radii, interpolated_spectral_radii
 from facegear.floquet.free_modes import UnsuitableSystemError
+from facegear.floquet.free_systems import FreeSystems
 from facegear.floquet.load_columns import LoadColumn
+from facegear.floquet.loads import ContactLoad
 from facegear.floquet.methods import AdaptiveMagnus, Collocation
 from facegear.floquet.multipliers import multipliers
 from facegear.floquet.multipliers import transition_matrices as by_method
 from facegear.floquet.periodic import PeriodicSystem
+from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.floquet.stepping import Family
+from facegear.support.quadrature import gauss_legendre, legendre_from_values
 
 RPM = np.pi / 30.0
 
@@ -301,3 +305,52 @@ def test_bad_input_names_the_parameter(shapes, arguments, error, message):
 def test_load_columns_must_match():
     with pytest.raises(ValueError, match="damping"):
         LoadColumn(np.zeros((2, 1)), np.zeros((3, 1)), np.zeros((2, 1)))
+
+
+def test_panels_follow_the_shapes_of_loads_before_forces_are_looked_at():
+    """Of (1.2 - s)⁻⁶ 16 nodes leave too much on the whole period, and nearer to its pole more than before."""
+    shape = PiecewiseChebyshev.fit(lambda s, piece: ((1.2 - s) ** -6.0)[:, None], [0.0], tolerance=1e-13)
+    system = PeriodicSystem([[1.0]], [[0.01]], [[4.0]], (ContactLoad(shape, stiffness=1e-5),), period=0.5)
+    free = FreeSystems.of([system], LoadColumn.of(system))
+    edges = FreeMotion(free).edges
+    nodes, tail = gauss_legendre(16)[0], legendre_from_values(16)[-2:]
+    for start, end in pairwise(edges):
+        values = shape(start + (end - start) * (nodes + 1.0) / 2.0)[:, 0]
+        assert np.abs(tail @ values).max() <= 1e-7 * shape.largest
+    assert edges.size > 2
+    assert edges[-1] - edges[-2] < edges[1] - edges[0]
+    found, expected = transition_matrices([system]), by_method([system], AdaptiveMagnus(1e-12))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())
+
+
+def test_some_of_many_systems_keep_their_modes_loads_and_angles(shapes):
+    systems = [synthetic_disk(speed * RPM, shapes[:1]) for speed in (200.0, 300.0, 500.0)]
+    free = FreeSystems.of(systems, LoadColumn.of_all(systems))
+    some = free.some(np.array([2, 0]))
+    alone = FreeSystems.of([systems[2]], LoadColumn.of(systems[2]))
+    np.testing.assert_allclose(some.angles[0], alone.angles[0], rtol=1e-12)
+    np.testing.assert_allclose(
+        some.held.modes.eigenvalues[0].imag, alone.held.modes.eigenvalues[0].imag, rtol=1e-9
+    )
+    np.testing.assert_allclose(some.column.stacked()[1:], LoadColumn.of(systems[0]).stacked(), rtol=1e-14)
+    assert list(some.systems) == [systems[2], systems[0]]
+
+
+@pytest.mark.parametrize("rate", ["frozen", "total"])
+def test_systems_with_values_of_their_own_are_those_of_a_column(shapes, rate):
+    """Many systems put their parameters into the equations, one system keeps them out: the same matrices."""
+    one = synthetic_disk(400.0 * RPM, shapes)
+    loads = tuple(replace(load, rate=rate) for load in one.loads)
+    part = np.array([[0.2], [0.7], [1.0]]) * np.array([1.0, 0.8, 0.5])
+    column = LoadColumn(CONTACT_MASS * part, CONTACT_DAMPING * part, CONTACT_STIFFNESS * part)
+    each = zip(*column.parts, strict=True)
+    one = replace(one, loads=loads)
+    systems = [one.replace_loads(mass=m, damping=c, stiffness=k) for m, c, k in each]
+    motion = FreeMotion(FreeSystems.of([one], column))
+    modes = motion.modes
+    expected = modes.state_from_real() @ motion.transition_matrices(column) @ modes.real_from_state()
+    found = transition_matrices(systems)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+    many = FreeMotion(FreeSystems.of(systems, column))
+    with pytest.raises(ValueError, match="column must be that of the systems"):
+        many.transition_matrices(LoadColumn(column.mass, column.damping, 2.0 * column.stiffness))

@@ -366,7 +366,7 @@ LINEAR = meshing().system
         (
             lambda: settled(meshing(), np.zeros((1, 4)), 3, 0),
             ValueError,
-            "kept must be at least 1",
+            "kept must be an integer from 1 to 3, got 0",
         ),
         (
             lambda: settled(meshing(), np.zeros((1, 4)), 3, 9),

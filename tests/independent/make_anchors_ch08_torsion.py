@@ -12,8 +12,9 @@ import numpy as np
 import yaml
 
 import facegear as fg
-from compendium.datasets.backlash import families, torque_response
-from facegear.floquet.continuation import orbits_at
+from compendium.datasets.backlash import torque_response
+from facegear.floquet.arc_length import Following
+from facegear.floquet.continuation import doubled, followed, orbits_at
 from facegear.floquet.orbits import periodic_orbit
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.gearboxes import FIGURES
@@ -33,6 +34,23 @@ CELLS = (
     ("from within, up", 250.0),
     ("from within, up", 245.0),
 )
+
+
+def families(model, lowest_rpm, highest_rpm, inner_rpm):
+    """Find families of motions over speed: from the highest, both ways from one between, and two periods of flips."""
+    low, high, inner = (float(fg.rad_per_s(x)) for x in (lowest_rpm, highest_rpm, inner_rpm))
+    bounded = Following(largest=30.0)
+    start = periodic_orbit(model.system(high))
+    found = {"from above": followed(model.system, high, start, low, high, direction=-1.0, following=bounded)}
+    start = periodic_orbit(model.system(inner))
+    for name, sense in (("from within, down", -1.0), ("from within, up", 1.0)):
+        found[name] = followed(model.system, inner, start, low, high, direction=sense, following=bounded)
+    flips = [x for x in found["from above"].special if x.kind == "flip" and x.orbit.periods == 1]
+    for flip in flips:
+        found[f"two periods, {fg.rpm(flip.parameter):.0f} rpm"] = doubled(
+            model.system, flip, low, high, following=bounded
+        )
+    return found
 
 
 def shot(speed, start, periods, model=PLAY):

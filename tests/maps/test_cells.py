@@ -13,7 +13,7 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps import cells as module
-from facegear.maps import stability_map as engine
+from facegear.maps import ways as engine
 from facegear.maps.cells import cells_of
 from facegear.maps.stability_map import stability_map
 from facegear.mechanics.classical import Mathieu

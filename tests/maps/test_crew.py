@@ -106,3 +106,12 @@ def test_an_error_in_this_process():
 def test_a_number_of_processes_that_is_none():
     with pytest.raises(ValueError, match="jobs"):
         Crew(0)
+
+
+def test_while_nothing_is_done_it_tells_what_is_at_work():
+    told = []
+    with Crew(jobs=2) as crew:
+        crew.add("long", 0.0, time.sleep, 1.0)
+        assert [name for name, _ in crew.results(told.append, every=0.05)] == ["long"]
+    assert told
+    assert all(names == ["long"] for names in told)

@@ -19,8 +19,7 @@ from facegear.floquet.multipliers import growth_rate
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
-from facegear.maps import parallel
-from facegear.maps import stability_map as maps
+from facegear.maps import parallel, ways
 from facegear.maps.stability_map import stability_map
 from facegear.maps.tracing import borders
 from facegear.mechanics import cases
@@ -36,7 +35,7 @@ from facegear.support.parameters import rad_per_s
 def _small_models_stand_for_large_ones():
     """Their cells would be computed together (test_cells); here they go by column, on sheets and by row."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(maps, "cells_of", lambda models, probes, speeds: None)
+        patch.setattr(ways, "cells_of", lambda models, probes, speeds: None)
         yield
 
 
@@ -258,7 +257,7 @@ def test_only_load_parameters_take_the_shared_column(monkeypatch):
     def refuse(*arguments):
         raise AssertionError("column of load parameters expected")
 
-    monkeypatch.setattr(maps, "_by_row", refuse)
+    monkeypatch.setattr(ways, "_by_row", refuse)
     stability_map(TRANSVERSE, [10.0], "mass", [0.1, 0.2], jobs=1)
     with pytest.raises(AssertionError, match="column of load parameters"):
         stability_map(TRANSVERSE, [10.0], "thickness_ratio", [0.03, 0.04], jobs=1)
@@ -276,7 +275,7 @@ def test_a_parameter_too_fast_for_series_at_low_speeds_is_interpolated_at_high_o
         return route
 
     for name in ("_by_row", "_by_column"):
-        monkeypatch.setattr(maps, name, watched(name, getattr(maps, name)))
+        monkeypatch.setattr(ways, name, watched(name, getattr(ways, name)))
     speeds, values = rad_per_s(np.array([60.0, 120.0, 480.0, 950.0])), np.linspace(0.025, 0.045, 41)
     chart = stability_map(TRANSVERSE, speeds, "thickness_ratio", values, jobs=1)
     assert seen == {"_by_row": 2, "_by_column": 2}

@@ -16,7 +16,8 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.geometry.drive import Drive
 from facegear.maps import parallel, scanning, tracing
-from facegear.maps.scanning import Scan, scan_of
+from facegear.maps.scanning import scan_of
+from facegear.maps.scans import Scan
 from facegear.maps.tracing import borders, search_seconds, tongues
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.edge_stiffness import DrivingForce

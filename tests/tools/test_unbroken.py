@@ -11,6 +11,7 @@ from tools.unbroken import is_running_text, keep_with_formula, pieces, with_perc
     [
         ("By (3-20) and (4-2a).", ["(3-20)", "(4-2a)"]),
         ("(7-2)", ["(7-2)"]),
+        ("pointed (3-13, 3-14), (3-9 to 3-11)", ["3-13", "3-14", "3-9", "3-11"]),
         ("From 3-20 on, (1.5-2), (2012-05) and (x-1)", []),
     ],
 )

@@ -10,10 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from facegear.floquet.arc_length import Following
 from facegear.floquet.branches import Branch
 from facegear.floquet.clearance import ClearanceSystem
-from facegear.floquet.continuation import doubled, followed, orbits_at
+from facegear.floquet.continuation import followed, orbits_at
 from facegear.floquet.orbits import Orbit, periodic_orbit
 from facegear.floquet.transients import settled
 from facegear.mechanics.backlash import Backlash
@@ -23,23 +22,6 @@ from facegear.support.types import FloatArray
 
 # How near a speed may be to where motions meet [rpm].
 _CLEAR = 3.0
-
-
-def families(model: Backlash, lowest_rpm: float, highest_rpm: float, inner_rpm: float) -> dict[str, Branch]:
-    """Find families of motions over speed: from the highest, both ways from one between, and two periods of flips."""
-    low, high, inner = (float(rad_per_s(x)) for x in (lowest_rpm, highest_rpm, inner_rpm))
-    bounded = Following(largest=30.0)
-    start = periodic_orbit(model.system(high))
-    found = {"from above": followed(model.system, high, start, low, high, direction=-1.0, following=bounded)}
-    start = periodic_orbit(model.system(inner))
-    for name, sense in (("from within, down", -1.0), ("from within, up", 1.0)):
-        found[name] = followed(model.system, inner, start, low, high, direction=sense, following=bounded)
-    flips = [x for x in found["from above"].special if x.kind == "flip" and x.orbit.periods == 1]
-    for flip in flips:
-        found[f"two periods, {rpm(flip.parameter):.0f} rpm"] = doubled(
-            model.system, flip, low, high, following=bounded
-        )
-    return found
 
 
 def statistics(model: Backlash, orbit: Orbit) -> tuple[float, ...]:

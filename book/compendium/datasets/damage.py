@@ -217,13 +217,6 @@ def sidebands(models: Sequence[DamagedTooth], speed: float, order: int, coordina
     )
 
 
-def sampled(model: DamagedTooth, speed: float, samples: int, coordinate: int) -> FloatArray:
-    """Coordinate over a revolution, shape (teeth, samples): what an encoder reads in each mesh period."""
-    x = np.arange(model.teeth * samples) / (model.teeth * samples)
-    response = steady_response(model.system(speed))
-    return response.displacements(x)[:, coordinate].reshape(model.teeth, samples)
-
-
 def hit_rates(
     pattern: FloatArray, signal: FloatArray, slot: int, noises: ArrayLike, trials: int, seed: int
 ) -> xr.Dataset:

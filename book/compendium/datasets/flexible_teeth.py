@@ -30,7 +30,13 @@ _growth = partial(variable, units="1/s", rtol=1e-6, atol=1e-3)
 
 
 def growth_maps(
-    models: Mapping[str, Model], speeds_rpm: ArrayLike, parameter: str, values: ArrayLike, jobs: int = -1
+    models: Mapping[str, Model],
+    speeds_rpm: ArrayLike,
+    parameter: str,
+    values: ArrayLike,
+    jobs: int = -1,
+    *,
+    growth: Mapping[str, xr.DataArray] | None = None,
 ) -> xr.Dataset:
     """Growth rates of several models over speed and one parameter.
 
@@ -44,6 +50,8 @@ def growth_maps(
     values : array_like
         Its values [its unit].
     jobs : int
+    growth : mapping of str to xarray.DataArray, optional
+        Maps of :func:`facegear.maps.stability_map.stability_map` of all models over these, if they are there already.
 
     Returns
     -------
@@ -51,8 +59,11 @@ def growth_maps(
         ``growth_rate`` [1/s] over (model, value, speed).
     """
     shown, taken = np.asarray(speeds_rpm, dtype=float), np.asarray(values, dtype=float)
-    charts_of = _rows if taken.size == 1 else _maps
-    charts = charts_of(list(models.values()), np.asarray(rad_per_s(shown)), parameter, taken, jobs)
+    if growth is None:
+        charts_of = _rows if taken.size == 1 else _maps
+        charts = charts_of(list(models.values()), np.asarray(rad_per_s(shown)), parameter, taken, jobs)
+    else:
+        charts = [growth[name].values for name in models]
     return xr.Dataset(
         {"growth_rate": _growth(("model", "value", "speed"), charts, "Growth rate")},
         {

@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.torsional import METHOD
-from facegear.floquet.models import Model, replace_parameter, value_of
+from facegear.floquet.models import replace_parameter, value_of
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.rows import Rows
 from facegear.maps.tracing import Tongue, tongues
@@ -19,7 +19,6 @@ from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.torsional import Gearbox, Torsional
 from facegear.support.labelled import filled_labels, filled_rows, text, variable
 from facegear.support.parameters import rad_per_s, rpm
-from facegear.support.types import FloatArray
 
 
 def of_length(model: HeavyShafts, length: float, lengths: Sequence[str]) -> HeavyShafts:
@@ -117,10 +116,9 @@ def stability(
     speeds_rpm: ArrayLike,
     lengths_m: ArrayLike,
     sections_m: ArrayLike,
+    growth: Sequence[ArrayLike],
 ) -> xr.Dataset:
-    """Growth rates over speed and the length of shafts, those of massless shafts, and traced borders.
-
-    Every row is one gearbox, whose multipliers are interpolated along the inverse of speed.
+    """Put together growth rates over speed and the length of shafts, those of massless shafts, and traced borders.
 
     Parameters
     ----------
@@ -131,6 +129,8 @@ def stability(
     lengths_m : array_like, shape (L,)
     sections_m : array_like
         Lengths at which borders are traced.
+    growth : sequence of array_like, shape (L, S)
+        Growth rates [1/s], of each length a row.
 
     Returns
     -------
@@ -143,14 +143,10 @@ def stability(
     speeds = tuple(float(x) for x in rad_per_s(shown))
     ends = (speeds[0], speeds[-1])
 
-    def row(kind: Model, path: tuple[str, ...], value: float) -> FloatArray:
-        radii, periods = Rows(kind, path, (value,), speeds, METHOD).compute()
-        return np.asarray(np.log(radii[0]) / periods[0])
-
-    growth = [row(of_length(model, length, lengths), (lengths[0],), length) for length in values.tolist()]
-    stiffness = ("gearbox", "output_stiffness")
     base = model.torsional
-    massless = row(base, stiffness, value_of(base, "output_stiffness"))
+    own = value_of(base, "output_stiffness")
+    radii, periods = Rows(base, ("gearbox", "output_stiffness"), (own,), speeds, METHOD).compute()
+    massless = np.log(radii[0]) / periods[0]
     sections = np.asarray(sections_m, dtype=float)
     found = [tongues(of_length(model, length, lengths), ends, method=METHOD) for length in sections.tolist()]
     before = tongues(base, ends, method=METHOD)

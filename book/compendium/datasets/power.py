@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -10,8 +10,14 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from compendium.datasets.inplane import described
-from compendium.datasets.transverse import describe, map_family
-from facegear.design.envelope import critical_power, disk_growth_rate, largest_power, mode_critical_powers
+from compendium.datasets.transverse import describe, labelled_map, map_family
+from facegear.design.envelope import (
+    PowerLimit,
+    critical_power,
+    disk_growth_rate,
+    largest_power,
+    mode_critical_powers,
+)
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.modes import mean_growth_rate
 from facegear.mechanics.disk import disk_modes
@@ -87,7 +93,13 @@ def stiffness_table(body: Body, speed: float, harmonics: int) -> xr.Dataset:
 
 
 def disk_alone(
-    body: Body, pinion_speed: float, powers: ArrayLike, speeds_rpm: Sequence[float], *, harmonics: int = 5
+    body: Body,
+    pinion_speed: float,
+    powers: ArrayLike,
+    speeds_rpm: Sequence[float],
+    *,
+    harmonics: int = 5,
+    critical: Sequence[float] | None = None,
 ) -> xr.Dataset:
     """Growth rate of the disk alone against the power, and its critical power at several speeds.
 
@@ -102,6 +114,8 @@ def disk_alone(
         Speeds of the face gear [rpm].
     harmonics : int, optional
         Largest harmonic of the stress.
+    critical : sequence of float, optional
+        Critical powers at the speeds [W], if they are there already.
 
     Returns
     -------
@@ -116,9 +130,10 @@ def disk_alone(
         forces = [DrivingForce(power, pinion_speed, following, harmonics) for power in levels.tolist()]
         return [disk_growth_rate(body, force, float(rad_per_s(speed))) for force in forces]
 
-    critical = [
-        critical_power(body, pinion_speed, float(rad_per_s(v)), harmonics=harmonics) for v in speeds_rpm
-    ]
+    if critical is None:
+        critical = [
+            critical_power(body, pinion_speed, float(rad_per_s(v)), harmonics=harmonics) for v in speeds_rpm
+        ]
     both = ("speed_rpm", "power")
     return xr.Dataset(
         {
@@ -146,7 +161,13 @@ def disk_alone(
 
 
 def power_maps(
-    model: Transverse, powers: Sequence[float], speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = -1
+    model: Transverse,
+    powers: Sequence[float],
+    speeds_rpm: ArrayLike,
+    values: ArrayLike,
+    *,
+    growth: Mapping[float, xr.DataArray] | None = None,
+    jobs: int = -1,
 ) -> xr.Dataset:
     """Compute maps over speed and bearing stiffness at several powers (Figs 6.6, 6.7).
 
@@ -158,6 +179,8 @@ def power_maps(
         [W].
     speeds_rpm, values : array_like
         Speeds of the face gear [rpm] and bearing stiffnesses μ.
+    growth : mapping of float to xarray.DataArray, optional
+        Maps of :func:`facegear.maps.stability_map.stability_map` over these, by the power, if they are there already.
     jobs : int, optional
         Number of workers.
 
@@ -166,7 +189,10 @@ def power_maps(
     xarray.Dataset
         ``growth_rate`` (power, stiffness, speed_rpm) [1/s].
     """
-    family = map_family(model, "power", powers, speeds_rpm, "stiffness", values, jobs=jobs)
+    known = {
+        power: labelled_map(model, chart, speeds_rpm, "stiffness") for power, chart in (growth or {}).items()
+    }
+    family = map_family(model, "power", powers, speeds_rpm, "stiffness", values, known=known, jobs=jobs)
     return family.assign_attrs(parameters=f"{describe_power(model)}, swept = stiffness and power")
 
 
@@ -206,13 +232,17 @@ def mean_growth_map(model: Transverse, speeds_rpm: ArrayLike, values: ArrayLike)
 
 
 def power_envelope(
-    models: dict[str, Transverse], parameter: str, values: ArrayLike, speeds_rpm: tuple[float, float]
+    models: Mapping[str, Transverse],
+    parameter: str,
+    values: ArrayLike,
+    speeds_rpm: tuple[float, float],
+    known: Mapping[tuple[str, float], PowerLimit] | None = None,
 ) -> xr.Dataset:
     """Largest power at which a range of speeds is stable, against one parameter, for several variants of a drive.
 
     Parameters
     ----------
-    models : dict of str to Transverse
+    models : mapping of str to Transverse
         Name of each variant, and the variant with a driving force.
     parameter : str
         Swept parameter.
@@ -220,6 +250,8 @@ def power_envelope(
         Its values.
     speeds_rpm : tuple of float
         Lowest and highest speed of the face gear [rpm].
+    known : mapping of (str, float) to PowerLimit, optional
+        Limits that are there already, by variant and value.
 
     Returns
     -------
@@ -229,12 +261,15 @@ def power_envelope(
         instabilities in the coordinate ``label``, of the variants in ``variant_name``.
     """
     low, high = (float(rad_per_s(v)) for v in speeds_rpm)
+    there = known or {}
     found = [
         [
-            largest_power(replace_parameter(model, parameter, value), (low, high))
-            for value in finite_array("values", values)
+            there[name, value]
+            if (name, value) in there
+            else largest_power(replace_parameter(model, parameter, value), (low, high))
+            for value in finite_array("values", values).tolist()
         ]
-        for model in models.values()
+        for name, model in models.items()
     ]
     both = ("variant", parameter)
     powers = [[limit.power for limit in row] for row in found]

@@ -187,7 +187,13 @@ def moment_arms(model: Torsional, count: int = 201) -> xr.Dataset:
 
 
 def growth_map(
-    figure: TorsionalFigure, speeds_rpm: ArrayLike, values: ArrayLike, *, jobs: int = -1, **options: Any
+    figure: TorsionalFigure,
+    speeds_rpm: ArrayLike,
+    values: ArrayLike,
+    *,
+    growth: xr.DataArray | None = None,
+    jobs: int = -1,
+    **options: Any,
 ) -> xr.Dataset:
     """Growth rates over speed and the swept parameter of a figure.
 
@@ -198,6 +204,8 @@ def growth_map(
         Speeds of the face gear [rpm], ascending.
     values : array_like
         Values of the parameter.
+    growth : xarray.DataArray, optional
+        Map of :func:`facegear.maps.stability_map.stability_map` over these, if it is there already.
     jobs : int, optional
         Number of processes, as joblib's ``n_jobs``; -1 for all processors.
     **options
@@ -211,7 +219,9 @@ def growth_map(
     array = finite_array("values", values)
     base = figure.model(**options)
     speeds = rad_per_s(finite_array("speeds_rpm", speeds_rpm, "rpm"))
-    chart = stability_map(base, speeds, figure.parameter, array, method=METHOD, jobs=jobs)
+    chart = growth
+    if chart is None:
+        chart = stability_map(base, speeds, figure.parameter, array, method=METHOD, jobs=jobs)
     both = (figure.parameter, "speed_rpm")
     return xr.Dataset(
         {"growth_rate": _growth(both, chart.values, "Growth rate ln(max|λ|)/T0")},
@@ -226,6 +236,7 @@ def stability_figure(
     columns: int = 400,
     rows: int = 32,
     sections: int = 4,
+    growth: xr.DataArray | None = None,
     jobs: int = -1,
 ) -> xr.Dataset:
     """Map of growth rates with traced borders and Hsu's bands (one of Figs 7.9, 7.11, 7.12, 7.13).
@@ -237,6 +248,8 @@ def stability_figure(
         Speeds from the figure's lowest to the highest one, and values of the parameter.
     sections : int, optional
         Values of the parameter, evenly spread over the axis from its middle cell on, at which borders are traced.
+    growth : xarray.DataArray, optional
+        As for :func:`growth_map`.
     jobs : int, optional
         Number of processes, as joblib's ``n_jobs``; -1 for all processors.
 
@@ -250,7 +263,7 @@ def stability_figure(
     """
     columns = integer_at_least("columns", columns, 2)
     speeds = np.linspace(figure.lowest_rpm, HIGHEST_SPEED_RPM, columns)
-    chart = growth_map(figure, speeds, axis_values(figure, rows), jobs=jobs)
+    chart = growth_map(figure, speeds, axis_values(figure, rows), growth=growth, jobs=jobs)
     places = axis_values(figure, 2 * integer_at_least("sections", sections, 1) + 1)[1::2]
     traced = traced_sections(figure, places, jobs=jobs)
     hsu = hsu_sections(figure, places)
@@ -351,7 +364,9 @@ def hsu_sections(figure: TorsionalFigure, values: ArrayLike) -> xr.Dataset:
     )
 
 
-def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
+def resonances(
+    figure: TorsionalFigure, value: float, found: Mapping[str, Sequence[Any]] | None = None
+) -> xr.Dataset:
     """Resonances of one gearbox by Floquet's and by Hsu's method, side by side.
 
     Parameters
@@ -359,6 +374,8 @@ def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
     figure : TorsionalFigure
     value : float
         Value of the swept parameter.
+    found : mapping of str to sequence, optional
+        Tongues and bands by ``floquet``, ``hsu`` and ``blocks``, if they are there already.
 
     Returns
     -------
@@ -370,12 +387,15 @@ def resonances(figure: TorsionalFigure, value: float) -> xr.Dataset:
     """
     model = replace_parameter(figure.model(), figure.parameter, value)
     span = (figure.lowest_rpm, HIGHEST_SPEED_RPM)
-    traced = tongues(model, (rad_per_s(span[0]), rad_per_s(span[1])), method=METHOD)
-    routes = {"floquet": traced, "hsu": hsu_bands(model, span), "blocks": block_bands(model, span)}
-    bands = {name: _by_label(found) for name, found in routes.items()}
-    first = {label: ends[0] for found in reversed(bands.values()) for label, ends in found.items()}
+    routes: Mapping[str, Sequence[Any]] = found or {
+        "floquet": tongues(model, (rad_per_s(span[0]), rad_per_s(span[1])), method=METHOD),
+        "hsu": hsu_bands(model, span),
+        "blocks": block_bands(model, span),
+    }
+    bands = {name: _by_label(route) for name, route in routes.items()}
+    first = {label: ends[0] for route in reversed(bands.values()) for label, ends in route.items()}
     labels = sorted(first, key=lambda label: float(first[label]))
-    growth = dict(zip(bands["floquet"], (tongue.growth_rate for tongue in traced), strict=True))
+    growth = dict(zip(bands["floquet"], (tongue.growth_rate for tongue in routes["floquet"]), strict=True))
     nothing = (np.nan, np.nan)
     names = {"floquet": "Floquet", "hsu": "Hsu, pairs", "blocks": "Hsu, blocks"}
     return xr.Dataset(

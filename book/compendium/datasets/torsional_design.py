@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -61,7 +61,11 @@ def variants(model: Torsional) -> dict[str, Torsional]:
     }
 
 
-def variant_tongues(models: Mapping[str, Torsional], speeds_rpm: tuple[float, float]) -> xr.Dataset:
+def variant_tongues(
+    models: Mapping[str, Torsional],
+    speeds_rpm: tuple[float, float],
+    traced: Mapping[str, Sequence[Tongue]] | None = None,
+) -> xr.Dataset:
     """Tongues of several variants of a gearbox.
 
     Parameters
@@ -70,6 +74,8 @@ def variant_tongues(models: Mapping[str, Torsional], speeds_rpm: tuple[float, fl
         From :func:`variants`.
     speeds_rpm : tuple of float
         Lowest and highest speed [rpm].
+    traced : mapping of str to sequence of Tongue, optional
+        Tongues of each, if they are there already.
 
     Returns
     -------
@@ -79,7 +85,11 @@ def variant_tongues(models: Mapping[str, Torsional], speeds_rpm: tuple[float, fl
         coordinate ``variant_name``, labels in ``label``.
     """
     low, high = (float(rad_per_s(limit)) for limit in speeds_rpm)
-    found = [tongues(model, (low, high), method=_METHOD) for model in models.values()]
+    there = traced or {}
+    found = [
+        there[name] if name in there else tongues(model, (low, high), method=_METHOD)
+        for name, model in models.items()
+    ]
     orders = np.arange(1, 5)
 
     table = partial(filled_rows, found)
@@ -259,6 +269,7 @@ def closing(
     parameter: str,
     dampings: ArrayLike,
     ranges_rpm: Mapping[str, tuple[float, float]],
+    followed: Mapping[str, GrowthPeaks] | None = None,
 ) -> xr.Dataset:
     """Largest growth of some tongues against the damping of a shaft, with every value that closes or opens one.
 
@@ -271,6 +282,8 @@ def closing(
         Its values, ascending.
     ranges_rpm : mapping of str to tuple of float
         Label of each tongue and the speeds [rpm] between which it lies at all dampings.
+    followed : mapping of str to GrowthPeaks, optional
+        What is there already, by the label.
 
     Returns
     -------
@@ -288,7 +301,8 @@ def closing(
     rows: list[GrowthPeaks] = []
     for label, limits in ranges_rpm.items():
         low, high = (float(rad_per_s(limit)) for limit in limits)
-        rows.append(growth_peaks(model, parameter, axis, (low, high), method=_METHOD))
+        peaks = (followed or {}).get(label)
+        rows.append(peaks or growth_peaks(model, parameter, axis, (low, high), method=_METHOD))
         for closing_value in rows[-1].closing_values:
             if closing_value.label != label:
                 raise ArithmeticError(

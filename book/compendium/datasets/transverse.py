@@ -75,9 +75,27 @@ def growth_map(
     """
     speeds = np.asarray(speeds_rpm, dtype=float)
     chart = stability_map(model, rad_per_s(speeds), parameter, values, jobs=jobs, progress=False)
+    return labelled_map(model, chart, speeds, parameter)
+
+
+def labelled_map(model: Transverse, chart: xr.DataArray, speeds_rpm: ArrayLike, parameter: str) -> xr.Dataset:
+    """Give a map that is there the labels of :func:`growth_map`.
+
+    Parameters
+    ----------
+    model : Transverse
+    chart : xarray.DataArray
+        From :func:`facegear.maps.stability_map.stability_map`, of this model over these speeds and this parameter.
+    speeds_rpm : array_like
+        Its speeds of the face gear [rpm].
+    parameter : str
+    """
     return xr.Dataset(
         {"growth_rate": _growth((parameter, "speed_rpm"), chart.values, "Growth rate ln(max|λ|)/T0")},
-        coords={parameter: np.asarray(values, dtype=float), "speed_rpm": speeds},
+        coords={
+            parameter: np.asarray(chart[parameter].values, dtype=float),
+            "speed_rpm": np.asarray(speeds_rpm, dtype=float),
+        },
         attrs={"parameters": f"{describe(model)}, swept = {parameter}"},
     )
 

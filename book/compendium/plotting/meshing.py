@@ -228,7 +228,7 @@ def contact_centroid_sketch(instants: xr.Dataset) -> Figure:
         )
         panel.set_title(f"({'ab'[k]}) $t/T_0$ = {float(shown.instant):.2f}", loc="left")
         panel.set_xlabel("across [mm]")
-        panel.margins(x=0.35, y=0.1)
+        panel.margins(x=0.5, y=0.1)
     axes[0].set_ylabel("radial [mm]")
     axes[-1].legend(loc="lower right")
     return figure

@@ -172,7 +172,7 @@ def edge_load() -> Figure:
     line(right, (0.0, -0.7), (4.4, -0.7), color=GREY, linewidth=0.9, linestyle="--")
     note(right, (4.4, -0.95), "rim at rest, unrolled", ha="right", va="top", color=GREY)
     foot = np.array([2.2, 0.55 * np.sin(0.75 * 2.2 - 0.7) + 0.4])
-    for tilt, colour, name, shift in ((0.0, BLUE, "dead", -0.27), (slope, VERMILION, "follower", 0.2)):
+    for tilt, colour, name, shift in ((0.0, BLUE, "dead", -0.5), (slope, VERMILION, "follower", 0.2)):
         end = foot + 1.5 * np.array([np.cos(tilt), np.sin(tilt)])
         arrow(right, tuple(foot), tuple(end), color=colour, linewidth=2.0, mutation_scale=15, zorder=5)
         note(right, (float(end[0]) + 0.1, float(end[1]) + shift), name, ha="left", color=colour)

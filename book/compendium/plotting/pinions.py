@@ -350,6 +350,9 @@ def growth_at_angle(
     )
     line.axhline(0.0, color=INK, linewidth=0.9)
     line.set(
-        xlabel=_SPEED, ylabel=_GROWTH_LABEL, ylim=(-4.0, _largest([chart]) * 1.05), xlim=(speed[0], speed[-1])
+        xlabel=_SPEED,
+        ylabel=_GROWTH_LABEL,
+        ylim=(1.05 * float(chart["growth_rate"].min()), 1.05 * _largest([chart])),
+        xlim=(speed[0], speed[-1]),
     )
     return figure

@@ -37,6 +37,8 @@ _AXIS = {
     "output_damping": "output shaft $c_2/k_2$ [s]",
 }
 _SPEED = "speed of the face gear [rpm]"
+# Of an upright name of a tongue, as a part of the width of the axes.
+_NAME_WIDTH = 0.035
 _MODES = ((BLUE, "-"), (VERMILION, "--"), (GREEN, "-."))
 
 
@@ -158,8 +160,27 @@ def _draw_hsu(ax: Axes, chart: xr.Dataset) -> None:
                     ax.plot(ends_of_line, [here[0], there[0]], "--", color=ORANGE, linewidth=1.1)
 
 
+def _apart(places: list[float], least: float) -> list[float]:
+    """Move ascending places as little as it takes to have them apart by a least distance."""
+    groups: list[
+        list[float]
+    ] = []  # of neighbours that touch: the middle of where they want to be, and how many
+    for place in places:
+        groups.append([place, 1])
+        while len(groups) > 1:
+            (left, few), (right, more) = groups[-2:]
+            if right - left >= 0.5 * least * (few + more):
+                break
+            groups[-2:] = [[(few * left + more * right) / (few + more), few + more]]
+    return [
+        middle + least * (number - 0.5 * (count - 1))
+        for middle, count in groups
+        for number in range(int(count))
+    ]
+
+
 def _label_tongues(ax: Axes, chart: xr.Dataset) -> None:
-    """Name every tongue once, where it grows most, names in rows that do not overlap."""
+    """Name every tongue once, where it grows most: upright names above the axes, beside one another."""
     places: dict[str, tuple[float, float, float]] = {}
     for number, labels in enumerate(label_rows(chart["label"])):
         row = chart.isel(section=number)
@@ -168,27 +189,30 @@ def _label_tongues(ax: Axes, chart: xr.Dataset) -> None:
             if label not in places or growth > places[label][2]:
                 places[label] = (float(row["peak"][tongue]), float(row["section"]), growth)
     low, high = ax.get_xlim()
-    free = [-np.inf] * 4
-    for label, (speed, height, _) in sorted(places.items(), key=lambda item: item[1][0]):
-        share = (speed - low) / (high - low)
-        # Rows above the axes, the lowest one in which the name does not touch its neighbour.
-        level = next((i for i, end in enumerate(free) if share - end > 0.1), int(np.argmin(free)))
-        free[level] = share
-        top = ax.get_ylim()[1]
-        ax.annotate(
+    in_order = sorted(places.items(), key=lambda item: item[1][0])
+    shares = [(speed - low) / (high - low) for _, (speed, *_) in in_order]
+    for (label, (speed, height, _)), share, place in zip(
+        in_order, shares, _apart(shares, _NAME_WIDTH), strict=True
+    ):
+        end = float(ax.transAxes.inverted().transform(ax.transData.transform((speed, height)))[1])
+        ax.plot(
+            [place, share, share],
+            [1.05, 1.0, min(end, 1.0)],
+            color=GREY,
+            linewidth=0.6,
+            transform=ax.transAxes,
+            clip_on=False,
+        )
+        ax.text(
+            place,
+            1.06,
             label,
-            xy=(speed, height),
-            xytext=(share, 1.03 + 0.07 * level),
-            textcoords="axes fraction",
+            transform=ax.transAxes,
+            rotation="vertical",
             ha="center",
+            va="bottom",
             fontsize=8.5,
             color=INK,
-            annotation_clip=False,
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4},
-            zorder=4,  # above the leaders of others
-            arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 0}
-            if height < top
-            else None,
         )
 
 
@@ -208,7 +232,7 @@ def stability_maps(charts: Mapping[str, xr.Dataset]) -> Figure:
         _draw_hsu(ax, chart)
         _draw_tongues(ax, chart)
         _label_tongues(ax, chart)
-        ax.set_title(title, loc="left", pad=40)
+        ax.set_title(title, loc="left", pad=60)
         ax.set_xlabel(_SPEED)
     axes[0].plot([], [], ".", color=VERMILION, label="traced borders (Floquet)")
     axes[0].plot([], [], "|--", color=ORANGE, label="bands after Hsu")

@@ -173,14 +173,13 @@ def wide_maps(
             ax.axhline(height, color=INK, linestyle=":", linewidth=1.0)
             ax.annotate(
                 name,
-                (0.99 * right, height),
-                xytext=(0, 2),
+                (right, height),
+                xytext=(3, 0),
                 textcoords="offset points",
-                ha="right",
-                va="bottom",
+                ha="left",
+                va="center",
                 fontsize=9,
                 color=INK,
-                bbox={"facecolor": "white", "alpha": 0.85, "edgecolor": "none", "pad": 0.4},
             )
         share = 100.0 * (chart["growth_rate"].values > 0.0).mean(axis=1)
         beside.plot(share, chart[_parameter(chart)].values * _SCALE[_parameter(chart)], color=VERMILION)

@@ -19,7 +19,15 @@ BOTH = ("input_length", "output_length")
 
 @pytest.fixture(scope="module")
 def chart():
-    return arrays.stability(MODEL, BOTH, [480.0, 530.0, 560.0, 640.0], [0.1, 0.3], [0.3])
+    speeds, lengths = [480.0, 530.0, 560.0, 640.0], [0.1, 0.3]
+    rows = [arrays.of_length(MODEL, length, BOTH) for length in lengths]
+    growth = [
+        fg.stability_map(
+            row, rad_per_s(speeds), "output_length", [row.output_length], method=arrays.METHOD, jobs=1
+        ).values[0]
+        for row in rows
+    ]
+    return arrays.stability(MODEL, BOTH, speeds, lengths, [0.3], growth)
 
 
 @pytest.fixture(scope="module")

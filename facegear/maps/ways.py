@@ -1,0 +1,151 @@
+"""By what a map goes, found out once: cells of small systems, columns along the parameter, or rows along speed.
+
+A :class:`Way` is computed whole by the workers of :func:`facegear.maps.stability_map.stability_map`, or in parts, as by
+the explorer, without looking again at what the systems have in common.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from facegear.maps.axes import periods_at
+from facegear.maps.cells import Cells, cells_of
+from facegear.maps.map_columns import Columns, columns_of
+from facegear.maps.map_sheets import laid_out
+from facegear.maps.parallel import Task, Workers
+from facegear.maps.rows import Rows, in_rows
+from facegear.maps.sweep import Sweep
+from facegear.support.types import FloatArray
+
+Run = Callable[[Sequence[Task], str, Workers], Iterator[tuple[int, FloatArray]]]
+"""Results of tasks with their numbers, as :func:`facegear.maps.parallel.computed` gives them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """What a map goes by.
+
+    Attributes
+    ----------
+    sweep : Sweep
+    speeds : ndarray, shape (S,)
+        Ascending [rad/s].
+    cells : Cells, optional
+        All cells, where they are computed one by one.
+    columns : Columns, optional
+        Of the speeds from number `start` on. Below it, and where there are none, the map goes by rows.
+    start : int
+    """
+
+    sweep: Sweep
+    speeds: FloatArray
+    cells: Cells | None
+    columns: Columns | None
+    start: int
+
+    @classmethod
+    def of(cls, sweep: Sweep, speeds: FloatArray) -> Way:
+        """Find out what the systems of a sweep have in common at speeds (S,), ascending [rad/s]."""
+        cells = None if sweep.method is not None else cells_of(sweep.models, sweep.probes, speeds)
+        if cells is not None:
+            return cls(sweep, speeds, cells, None, speeds.size)
+        return cls._without_cells(sweep, speeds)
+
+    @classmethod
+    def _without_cells(cls, sweep: Sweep, speeds: FloatArray) -> Way:
+        columns = columns_of(sweep, speeds)
+        start = speeds.size if columns is None else columns.smooth_from(speeds)
+        return cls(sweep, speeds, None, columns if start < speeds.size else None, start)
+
+    @property
+    def name(self) -> Literal["cells", "loads", "columns", "rows"]:
+        """Say what all cells go by, or "rows" if only some do otherwise; "loads" are the cheapest columns."""
+        if self.cells is not None:
+            return "cells"
+        if self.columns is None or self.start > 0:
+            return "rows"
+        return "columns" if self.columns.loads is None else "loads"
+
+    def part(self, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Way:
+        """Return the way of some rows and columns, by their numbers, ascending.
+
+        Columns of fewer values are others: where they are not of loads alone, part of the values goes by rows.
+        """
+        sweep, speeds = self.sweep, self.speeds[columns]
+        whole = rows.size == len(sweep.values)
+        if not whole:
+            sweep = sweep.some(rows)
+        if self.cells is not None:
+            return Way(sweep, speeds, self.cells.some(rows, columns), None, speeds.size)
+        if whole and self.columns is not None:
+            start = int(np.count_nonzero(columns < self.start))
+            return Way(sweep, speeds, None, self.columns if start < speeds.size else None, start)
+        return Way(sweep, speeds, None, None, speeds.size)
+
+    def rows(self) -> Rows:
+        """Return all cells as rows that are computed together."""
+        sweep = self.sweep
+        return Rows(sweep.model, sweep.path, sweep.values, tuple(self.speeds.tolist()), sweep.method)
+
+    def radii(self, run: Run) -> tuple[FloatArray, FloatArray, bool]:
+        """Spectral radii [-] and periods [s], each (V, S), and whether all of them are those of `cells`."""
+        if self.cells is None:
+            return *self._by_column_or_row(run), False
+        radii = np.empty((len(self.sweep.values), self.speeds.size))
+        places, tasks = self.cells.tasks()
+        for number, result in run(tasks, "stability map", "threads"):
+            radii[places[number]] = result
+        left = np.flatnonzero(np.isnan(radii[:, 0]))
+        if left.size == len(self.sweep.values):
+            return *Way._without_cells(self.sweep, self.speeds)._by_column_or_row(run), False
+        periods = self.cells.periods
+        if left.size:
+            radii[left], periods[left] = _by_row(self.sweep.some(left), self.speeds, run)
+        return radii, periods, left.size == 0
+
+    def _by_column_or_row(self, run: Run) -> tuple[FloatArray, FloatArray]:
+        parts = []
+        if self.start > 0:
+            parts.append(_by_row(self.sweep, self.speeds[: self.start], run))
+        if self.columns is not None:
+            speeds = self.speeds[self.start :]
+            periods = np.stack([periods_at(model, speeds) for model in self.sweep.models])
+            parts.append((_by_column(self.columns, speeds, run), periods))
+        radii, periods = (np.concatenate(part, axis=1) for part in zip(*parts, strict=True))
+        return radii, periods
+
+
+def _by_row(sweep: Sweep, speeds: FloatArray, run: Run) -> tuple[FloatArray, FloatArray]:
+    """Spectral radii and periods, (V, S), row by row."""
+    found = np.empty((2, len(sweep.values), speeds.size))
+    rows = in_rows(sweep.model, sweep.path, sweep.values, speeds, sweep.method)
+    places, tasks = zip(*rows, strict=True)
+    for number, result in run(tasks, "stability map", "processes"):
+        found[:, places[number]] = result
+    return found[0], found[1]
+
+
+def _by_column(columns: Columns, speeds: FloatArray, run: Run) -> FloatArray:
+    """Spectral radii, (V, S), column by column."""
+    radii = np.empty((len(columns.sweep.values), speeds.size))
+    chunks, sheets = laid_out(columns, speeds)
+    samples_of = [sample for sheet in sheets for sample in sheet.samples]
+    found: dict[int, FloatArray] = {}
+    # Columns of loads are batches of linear algebra; models are Python, of which only one thread runs at a time.
+    prefer: Workers = "processes" if columns.loads is None else "threads"
+    for number, result in run([*chunks, *samples_of], "stability map", prefer):
+        if number < len(chunks):
+            radii[:, chunks[number].place] = result
+        else:
+            found[number - len(chunks)] = result
+    results = iter([found[number] for number in range(len(samples_of))])
+    cells = [chunk for sheet in sheets for chunk in sheet.chunks([next(results) for _ in sheet.samples])]
+    # On sheets all is linear algebra, of whatever models.
+    for number, result in run(cells, "cells on sheets", "threads"):
+        radii[:, cells[number].place] = result
+    return radii
