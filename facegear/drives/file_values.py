@@ -18,8 +18,10 @@ from facegear.support.parameters import within
 
 # Factors by which people miss a unit, after that to SI.
 _FACTORS = (1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9)
+# Nobody writes their thousandth parts.
+_WITHOUT_PREFIX = ("°", "%", "rpm", "hp", "1/in")
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*", re.ASCII)
-_WITH_UNIT = re.compile(r"\s*([-+]?[\d.]+([eE][-+]?\d+)?)\s*[^\d\s.,:eE-].*", re.ASCII)
+_WITH_UNIT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)\s*[^\d\s.,:eE-].*", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -170,34 +172,37 @@ def checked_value(path: str, key: Key, value: Any) -> Any:
         return tuple(key.choices[key.choices.index(entry)] for entry in value)
     if key.kind == "numbers":
         if not isinstance(value, list | tuple) or not key.fewest <= len(value) <= MOST_PINIONS:
-            raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(value)}")
+            raise TypeError(f"{path} must be {key.valid}, got {_shown(value)}{_text_hint(key, value)}")
         return tuple(key.to_si(_number(f"{path}[{i}]", key, entry)) for i, entry in enumerate(value))
     if key.kind == "integer":
         number = isinstance(value, int) and not isinstance(value, bool)
         if not (number and key.allows(value)):
             error = ValueError if number else TypeError
-            raise error(f"{path} must be {key.valid_entry}, got {_shown(value)}{_text_hint(value)}")
+            raise error(f"{path} must be {key.valid_entry}, got {_shown(value)}{_text_hint(key, value)}")
         return int(value)
     return key.to_si(_number(path, key, value))
 
 
 def _number(path: str, key: Key, value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{path} must be {key.valid_entry}, got {_shown(value)}{_text_hint(value)}")
+        raise TypeError(f"{path} must be {key.valid_entry}, got {_shown(value)}{_text_hint(key, value)}")
     if key.or_zero and value == 0:
         return 0.0
     return within(path, value, key.lowest, key.highest, key.unit, _unit_hint(path, key, value))
 
 
-def _text_hint(value: Any) -> str:
-    """Guess at what made a text of a number."""
+def _text_hint(key: Key, value: Any) -> str:
+    """Guess at what made a text of a number that would be valid."""
     if not isinstance(value, str):
         return ""
     if _DECIMAL_COMMA.fullmatch(value):
-        return f" (a point, not a comma: {value.strip().replace(',', '.')})"
-    if match := _WITH_UNIT.fullmatch(value):
-        return f" (the number alone, its unit is that of the key: {match[1]})"
-    return ""
+        meant, words = value.strip().replace(",", "."), "a point, not a comma"
+    elif match := _WITH_UNIT.fullmatch(value):
+        meant, words = match[1], "the number alone, its unit is that of the key"
+    else:
+        return ""
+    is_valid = key.allows(float(meant)) and (key.kind != "integer" or meant.isdigit())
+    return f" ({words}: {meant})" if is_valid else ""
 
 
 def _unit_hint(path: str, key: Key, value: float) -> str:
@@ -205,7 +210,8 @@ def _unit_hint(path: str, key: Key, value: float) -> str:
     if key.hint:
         return key.hint
     hints = [f"a ratio, not {key.no_unit}?"] if key.no_unit and value > key.highest else []
-    factors = (key.to_si(1.0) ** -1, *_FACTORS) if key.unit else (1e-3,) if key.no_unit else ()
+    prefixes = () if key.unit in _WITHOUT_PREFIX else _FACTORS
+    factors = (key.to_si(1.0) ** -1, *prefixes) if key.unit else (1e-3,) if key.no_unit else ()
     for factor in factors:
         if factor != 1.0 and key.lowest <= value * factor <= key.highest:
             unit = f", in {key.unit}" if key.unit else ""

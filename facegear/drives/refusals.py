@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Mapping
 from typing import TypeVar
@@ -27,6 +28,11 @@ _TORQUE = re.compile(
     rf"got (?P<got>{_NUMBER}) N m(?: \([^()]*\))?",
     re.DOTALL,
 )
+# A parameter of a model, with or without the parts that it is in, where a sentence is about it.
+_PARAMETER = re.compile(
+    r"(?<![\w.])(?:\w+\.)*(?P<name>\w+)(?==\d| must | = \d+ is too )|(?<=\()(?P<alone>\w+)(?=\))"
+)
+_RADIANS = re.compile(rf"got (?P<got>{_NUMBER}) rad(?!/)")
 _SPEEDS = re.compile(
     rf"(?P<before>\b(?:at|near|speed,) |\bbetween (?P<low>{_NUMBER}) and )(?P<high>{_NUMBER}) rad/s"
 )
@@ -43,6 +49,7 @@ _OF_PROGRAMS = (
     (r", which facegear\.WithoutRigidMotion\(model\) takes out,", ""),
     (r' \(rate "total", sharing "\w+"\)', ""),
     (r"; else take .*?; got ", "; got "),
+    (_TOTAL_RATE, "a model that follows the moving contact"),
     (r"\bload\.(mass|stiffness|damping)=", r"pinions.\1 = "),
     (r"\bload\.(?=(mass|stiffness|damping)\b)", "pinions."),
 )
@@ -70,6 +77,23 @@ def told(problem: Exception) -> str:
     for pattern, instead in _OF_PROGRAMS:
         text = re.sub(pattern, instead, text, flags=re.DOTALL)
     return _SPEEDS.sub(_in_rpm, _OUT_OF_RANGE.sub(_in_units_of_the_file, text))
+
+
+def told_of_a_model(problem: Exception) -> str:
+    """Tell, as :func:`told`, what a model refuses that no file gave: its parameters by the names of their keys.
+
+    Examples
+    --------
+    >>> told_of_a_model(ValueError("gear.body.drive.shaft_angle must be a right angle, got 1.0472 rad"))
+    'gears.shaft_angle_deg must be a right angle, got 60.0001°'
+    """
+    text = _PARAMETER.sub(_by_its_key, told(problem))
+    return _RADIANS.sub(lambda found: f"got {math.degrees(float(found['got'])):.6g}°", text)
+
+
+def _by_its_key(found: re.Match[str]) -> str:
+    known = _NAMES.get(found["name"] or found["alone"])
+    return found[0] if known is None else known
 
 
 def _in_rpm(found: re.Match[str]) -> str:
@@ -111,6 +135,12 @@ def _keys_of_models() -> Mapping[str, tuple[str, Key]]:
 
 
 _KEYS = _keys_of_models()
+_NAMES = {
+    key.si_name: f"{name}.{key.name}"
+    for name, section in reversed(tuple(SECTIONS.items()))
+    for key in reversed(section.keys)
+    if name != "tolerances"
+}
 
 
 def built(found: FileValues, section: str, build: Callable[[], T]) -> T:

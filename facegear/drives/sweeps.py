@@ -14,7 +14,7 @@ from facegear.drives.contacts import NAMES, torsional_under
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.drive_keys import SECTIONS
 from facegear.drives.keys import MOST_CELLS, OVER_SI, Key
-from facegear.drives.refusals import told
+from facegear.drives.refusals import told_of_a_model
 from facegear.drives.verdict import driven
 from facegear.floquet.models import Model, replace_parameter, system_at, value_of
 from facegear.maps.parallel import parts_of
@@ -197,7 +197,7 @@ def _require_models(model: Model, key: Key, values: Sequence[float], speed: floa
             systems.append(system_at(replace_parameter(model, key.si_name, value), speed))
         except ValueError as problem:
             shown = f"{key.name} = {key.from_si(value):.6g} {key.unit}".rstrip()
-            raise ValueError(f"with {shown}: {told(problem)}") from problem
+            raise ValueError(f"with {shown}: {told_of_a_model(problem)}") from problem
     first, *others = (list(parts_of(system)) for system in systems)
     if all(len(first) == len(other) and all(map(np.array_equal, first, other)) for other in others):
         raise ValueError(

@@ -122,7 +122,9 @@ def nonnegative(name: str, value: Any, unit: str = "") -> float:
     return number
 
 
-def within(name: str, value: Any, lowest: float, highest: float, unit: str = "", hint: str = "") -> float:
+def within(
+    name: str, value: Any, lowest: float, highest: float, unit: str = "", hint: str | None = None
+) -> float:
     """Check that `value` lies in the closed interval [lowest, highest].
 
     Parameters
@@ -132,15 +134,15 @@ def within(name: str, value: Any, lowest: float, highest: float, unit: str = "",
     lowest, highest : float
         Ends of the valid interval, both allowed.
     hint : str, optional
-        Appended to the message, for example the likely wrong unit.
+        Appended to the message, for example the likely wrong unit; nothing is guessed then, nor where it is empty.
 
     Raises
     ------
     TypeError
         As in `finite`.
     ValueError
-        Outside the interval, as NaN is, too. A value that would be valid after multiplying or dividing by 1000 is named
-        as a likely mistake of units.
+        Outside the interval, as NaN is, too. A value with a unit that would be valid after multiplying or dividing by
+        1000 is named as a likely mistake of units.
     """
     bounded = math.isfinite(highest - lowest)
     number = _real(name, value, unit) if bounded else finite(name, value, unit)
@@ -148,7 +150,7 @@ def within(name: str, value: Any, lowest: float, highest: float, unit: str = "",
         return number
     message = f"{name} must lie in [{lowest:.6g}, {highest:.6g}]{_in(unit)}, got {_shown(value, unit)}"
     for factor in (1e-3, 1e3):
-        if not hint and lowest <= number * factor <= highest:
+        if unit and hint is None and lowest <= number * factor <= highest:
             hint = f"wrong by a factor of 1000? {name}={number * factor:.6g} would be valid"
     raise ValueError(f"{message} ({hint})" if hint else message)
 

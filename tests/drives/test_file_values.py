@@ -98,6 +98,20 @@ from tests.drives.drive_files import CASE_1, refusal
             "power_kW: 447.42\n  power_hp: 600",
             r"operation.power_kW = 447.42 and operation.power_hp = 600 say the same",
         ),
+        ("pinion_teeth: 26", "pinion_teeth: 26 teeth", r"300, got '26 teeth' \(the number alone, .*: 26\)$"),
+        ("damping_us: 3", "damping_us: 1.2.3 µs", r"pinions.damping_us must be 0, or .*, got '1.2.3 µs'$"),
+        ("damping_us: 3", "damping_us: .5 µs", r"got '.5 µs' \(the number alone, .*: .5\)$"),
+        ("name: Case I", "name: Case I\nmaterial: {poissons_ratio: 0.6}", r"poissons_ratio .*, got 0.6$"),
+        ("name: Case I", "name: Case I\ntolerances: {speed_percent: 300}", r"got 300 % \(0 is valid, too\)$"),
+        (
+            "name: Case I",
+            "name: Case I\ntolerances: {speed_percent: 0.05}",
+            r"got 0.05 % \(wrong unit\? tolerances.speed_percent: 5 would be valid, in %\)$",
+        ),
+        ("highest_speed_rpm: 1000", "highest_speed_rpm: 2e5", r"got 200000.0 rpm$"),
+        # A guess is one that would be valid.
+        ("pinion_teeth: 26", "pinion_teeth: 0x1A", r"from 10 to 300, got '0x1A'$"),
+        ("pinion_teeth: 26", "pinion_teeth: 26,5", r"from 10 to 300, got '26,5'$"),
         (
             "bore_radius_mm: 50",
             "bore_radius_mm: 50\n  nodal_circles: 7",

@@ -143,3 +143,35 @@ def test_a_phase_is_swept_although_it_is_the_same_at_both_ends():
     growth = found.chart["growth_rate"].values
     np.testing.assert_allclose(growth[0], growth[-1], rtol=1e-6, atol=1e-6)
     assert np.abs(growth[1] - growth[0]).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("example", "key", "lowest", "highest", "told"),
+    [
+        (
+            "two_gears",
+            "shaft_angle_deg",
+            80.0,
+            100.0,
+            r"gears.shaft_angle_deg must be a right angle, .* got 80°$",
+        ),
+        (
+            "both_faces",
+            "pressure_angle_deg",
+            14.5,
+            30.0,
+            r"gears.pinion_teeth = 26 is too few for a model that foll",
+        ),
+        ("both_faces", "tooth_damping_us", 0.0, 3.0, r"teeth.tooth_damping_us must be greater than 0"),
+        (
+            "case_1",
+            "pressure_angle_deg",
+            20.0,
+            30.0,
+            r"gears.pinion_teeth=26 is too few.* take at least 38 teeth",
+        ),
+    ],
+)
+def test_what_a_model_refuses_is_told_in_words_of_the_file(example, key, lowest, highest, told):
+    with pytest.raises(ValueError, match=told):
+        sweep(parse_drive(example_text(example)), key, lowest=lowest, highest=highest, cells=2)

@@ -49,9 +49,11 @@ def test_interval_message_names_a_factor_of_1000():
         ValueError, match=r"youngs_modulus .*200000000000\.0 would|youngs_modulus .*2e\+11 would"
     ):
         parameters.within("youngs_modulus", 200e6, 1e9, 1e12, "Pa")
-    with pytest.raises(ValueError, match="got 7") as caught:
-        parameters.within("x", 7.0, 1.0, 2.0)
-    assert "1000" not in str(caught.value)
+    # Neither what no factor makes valid nor what has no unit.
+    for value, unit in ((7.0, "m"), (1500.0, "")):
+        with pytest.raises(ValueError, match="got") as caught:
+            parameters.within("x", value, 1.0, 2.0, unit)
+        assert "1000?" not in str(caught.value)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 10**400])
