@@ -122,11 +122,11 @@ def _models(found: Assessment) -> Section:
         "Horizontal strips over speed, one for each model, green with red intervals; a last one in three colours",
     )
     names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
-    headings = (*names, *_FASTEST, _BASIS, "settled", "growth moved [%]")
+    headings = (*names, *_FASTEST, _BASIS, "settled")
     words = Paragraph(
         "Settled: the unstable speeds of two bases agree, and would if borders beside a narrow range came nearer by "
-        "twice as much as they moved. Growth rates are those of the basis that stands beside them; the last column "
-        "says by how much of itself the largest differs in the basis before."
+        "twice as much as they moved. Growth rates are those of the basis that stands beside them; in brackets, by "
+        "how much of itself the largest differs in the basis before."
     )
     table = Table(headings, _model_rows(found), "Models and what they come to")
     return Section("Models", (strips, words, table))
@@ -144,8 +144,7 @@ def _model_rows(found: Assessment) -> tuple[tuple[str, ...], ...]:
             *(outcome.variant.contact, outcome.variant.force, outcome.variant.teeth),
             *_what_grows(outcome.tongues, found.speeds),
             _basis_of(outcome.variant),
-            "yes" if outcome.settled else "NO",
-            "" if math.isnan(outcome.growth_moved) else f"{100 * outcome.growth_moved:.2g}",
+            _settled(outcome),
         )
         for outcome in order
     )
@@ -154,10 +153,15 @@ def _model_rows(found: Assessment) -> tuple[tuple[str, ...], ...]:
     if found.file.tolerances.speed:
         motion += f", {rpm(wide[0]):.4g} to {rpm(wide[1]):.4g} rpm"
     torsion = (
-        (motion, name, "", "", *_what_grows(tongues, wide), "", "", "")
-        for name, tongues in found.torsion.items()
+        (motion, name, "", "", *_what_grows(tongues, wide), "", "") for name, tongues in found.torsion.items()
     )
     return (*disk, *torsion)
+
+
+def _settled(outcome: Outcome) -> str:
+    """Say whether unstable speeds stand still, and how far the largest growth rate has moved."""
+    words = "yes" if outcome.settled else "NO"
+    return words if math.isnan(outcome.growth_moved) else f"{words} ({100 * outcome.growth_moved:.2g} %)"
 
 
 def _what_grows(found: Sequence[Tongue], speeds: tuple[float, float]) -> tuple[str, ...]:
