@@ -64,7 +64,7 @@ def effective_contact_ratio(data: xr.Dataset, plates: xr.Dataset, tregold: float
     ax.axhline(line, color=GREY, linewidth=1.0)
     ax.set(xscale="log", xlabel="torque at the pinion [N m]", ylabel="effective contact ratio")
     label_line(
-        ax, "Tregold's, and that of the unloaded point", (float(data.torque[2]), tregold), (0.0, -18.0)
+        ax, "Tregold's, and that of the unloaded point", (float(data.torque[10]), tregold), (0.0, 12.0)
     )
     label_line(ax, "line contact, shaper as the pinion", (float(data.torque[2]), line), (0.0, -18.0))
     ax.plot(

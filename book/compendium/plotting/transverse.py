@@ -33,6 +33,8 @@ _AXIS = {
 }
 _SCALE = {"stiffness": 1.0, "damping": 1e6, "mass": 1.0}
 _SPEED = "speed of the face gear [rpm]"
+# Part of the axis within which names of two lines would touch.
+_CLOSE = 0.05
 # Heights at which the name of a tongue is tried, from its section, in parts of the axis.
 _SHIFTS = tuple(sign * 0.09 * k for k in range(6) for sign in ((1, -1) if k else (1,)))
 
@@ -169,7 +171,10 @@ def wide_maps(
         mesh = _draw_map(ax, chart, largest)
         _draw_windows(ax, chart, windows[title])
         right = ax.get_xlim()[1]
+        heights = np.array([*marks[title].values()])
         for name, height in marks[title].items():
+            # Names of two lines close together stand above the one and below the other.
+            beside_it = heights[np.abs(heights - height) < _CLOSE * ax.get_ylim()[1]]
             ax.axhline(height, color=INK, linestyle=":", linewidth=1.0)
             ax.annotate(
                 name,
@@ -177,7 +182,7 @@ def wide_maps(
                 xytext=(3, 0),
                 textcoords="offset points",
                 ha="left",
-                va="center",
+                va="center" if beside_it.size == 1 else "bottom" if height > beside_it.min() else "top",
                 fontsize=9,
                 color=INK,
             )
