@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -19,6 +20,7 @@ from facegear.drives.growth_words import told
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
 from facegear.drives.report_arrays import describe
+from facegear.drives.report_files import foreign
 from facegear.drives.tolerance_cells import FINE, HALF, MOST, Factors
 from facegear.drives.torsion_response import peaks_table, response_table
 from facegear.drives.variants import Variant
@@ -336,8 +338,10 @@ def write_assessment(found: Assessment, folder: str | Path) -> Path:
     Raises
     ------
     OSError
-        If the folder cannot be written to.
+        If the folder cannot be written to, or has files of these names that no assessment wrote.
     """
+    if reason := foreign(Path(folder), FILES):
+        raise FileExistsError(errno.EEXIST, reason, str(folder))
     table = found.table()
     with folder_written_whole(Path(folder), FILES) as place:
         write_table(model_columns(table), place / "models.csv")
