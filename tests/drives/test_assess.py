@@ -17,6 +17,7 @@ from facegear.drives.findings import TORSION, Findings
 from facegear.drives.growth_words import told
 from facegear.drives.intervals import gaps
 from facegear.drives.outcome import Outcome
+from facegear.drives.page import page
 from facegear.drives.sections import torsion as torsion_section
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
@@ -361,6 +362,11 @@ def test_files_of_an_earlier_assessment_do_not_lie_beside_a_new_page(tmp_path):
     earlier = ["disk_response_peaks.nc", "disk_response_peaks.csv", "torsion_response.nc", "tolerances.csv"]
     for name in (*earlier, "my_notes.csv"):
         (tmp_path / name).write_text("of another drive")
+    # Without a page that says whose they are, they are nobody's to replace.
+    with pytest.raises(FileExistsError, match="would be replaced"):
+        write_assessment(assessment(outcome("Tregold", DEAD, RIGID)), tmp_path)
+    assert (tmp_path / "tolerances.csv").read_text() == "of another drive"
+    (tmp_path / PAGE).write_text(page("an earlier one", ()), encoding="utf-8")
     write_assessment(assessment(outcome("Tregold", DEAD, RIGID)), tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == [
         PAGE,
