@@ -23,7 +23,7 @@ from facegear.drives.growth_words import (
     turning,
     within_tolerances,
 )
-from facegear.drives.intervals import Intervals, cut, gaps, united
+from facegear.drives.intervals import Intervals, cut, gaps, inward, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
 from facegear.drives.torsion_response import in_words
@@ -171,7 +171,9 @@ class Assessment:
             words = f"Depends on {listed(self.decides)}: {where} {are} stable at all speeds."
         words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
         values = ", and the file's own within its tolerances" if self.worst else ""
-        words += f" Speeds at which every model is known to be stable{values}: {told(self.always_stable)}."
+        words += (
+            f" Speeds at which every model is known to be stable{values}: {told(inward(self.always_stable))}."
+        )
         families = (
             "all models of the disk's motion, or all of torsion, are" if self.torsion else "all models are"
         )

@@ -83,5 +83,6 @@ def peak_columns(table: xr.Dataset) -> dict[str, list[object]]:
 
 
 def _heading(name: str, unit: str) -> str:
-    """Column of a force: rms is that of what varies."""
-    return f"{name.replace('rms', 'rms_of_what_varies')}_{unit}"
+    """Column of a force: rms is that of what varies, lowest and highest are without the static force."""
+    whole = name.replace("rms", "rms_of_what_varies")
+    return f"{whole}{'' if 'rms' in name else '_less_static'}_{unit}"

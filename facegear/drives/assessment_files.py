@@ -118,7 +118,7 @@ def _models(found: Assessment) -> Section:
             _in_rpm(found.always_unstable),
             (float(rpm(low)), float(rpm(high))),
         ),
-        "Stable and unstable speeds under every model, the file's own contact and teeth first. The last strip: "
+        "Stable (pale) and unstable speeds under every model, the file's own contact and teeth first. The last strip: "
         "stable under all (the file's own one within its tolerances), unstable under all of the disk's "
         "motion or all of torsion, or depending on the model.",
         "Horizontal strips over speed, one for each model, green with red intervals; a last one in three colours",
@@ -126,8 +126,8 @@ def _models(found: Assessment) -> Section:
     names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
     headings = (*names, *_FASTEST, _BASIS, "settled")
     words = Paragraph(
-        "Settled: the unstable speeds of two bases agree, and would if borders beside a narrow range came nearer by "
-        "twice as much as they moved. Growth rates are those of the basis that stands beside them; in brackets, by "
+        "Settled: the unstable speeds of two bases agree; in a narrow range of three, also if borders beside it came "
+        "nearer by twice as much as they moved. Growth rates are those of the basis that stands beside them; in brackets, by "
         "how much of itself the largest differs in the basis before."
     )
     table = Table(headings, _model_rows(found), "Models and what they come to")

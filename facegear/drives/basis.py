@@ -17,8 +17,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from facegear.drives.intervals import Intervals, cut, united
+from facegear.floquet.labels import growth_and_combination
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import growth_rate
+from facegear.maps.peaks import largest_between
 from facegear.maps.tracing import Tongue, tongues
 from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.edge_stiffness import complete_harmonics
@@ -31,6 +33,10 @@ from facegear.support.types import FloatArray
 
 # Ratio of the highest and the lowest speed looked at, at least.
 _WIDE = 1.5
+# Speeds at which growth is tried in a part of a tongue without its peak.
+_TRIED = 17
+# Part by which the largest growth rate may differ from one basis to the next where all of a narrow range is unstable.
+_GROWTH_MOVED = 0.1
 # Part by which a wide range without a tongue is looked at beyond its ends.
 _BESIDE = 1.1
 # A border outside the range may come nearer by so many times what it moved from one basis to the next.
@@ -103,10 +109,26 @@ def within(model: Model, found: Sequence[Tongue], speeds: tuple[float, float]) -
     for tongue in found:
         lower, upper, peak = max(tongue.lower, low), min(tongue.upper, high), min(max(tongue.peak, low), high)
         if lower < upper:
-            # Growth falls off from its peak: of what lies in the range it is largest at the end next to that.
-            growth = tongue.growth_rate if peak == tongue.peak else growth_rate(model.system(peak))
-            inside.append(replace(tongue, lower=lower, upper=upper, peak=peak, growth_rate=growth))
+            part = replace(tongue, lower=lower, upper=upper, peak=peak)
+            # Tongues merge, and what is largest in a part of one may be another resonance than that of its peak.
+            inside.append(part if peak == tongue.peak else _with_peak(model, part))
     return tuple(inside)
+
+
+def _with_peak(model: Model, tongue: Tongue) -> Tongue:
+    """Find where a tongue grows fastest, how fast, and by what."""
+
+    def growth(speed: float) -> float:
+        return growth_rate(model.system(speed))
+
+    speeds = np.linspace(tongue.lower, tongue.upper, _TRIED)
+    rates = [growth(speed) for speed in speeds.tolist()]
+    best = int(np.argmax(rates))
+    low, high = speeds[[max(best - 1, 0), min(best + 1, _TRIED - 1)]].tolist()
+    peaks = [(rates[best], float(speeds[best])), largest_between(growth, low, high, 1e-6 * high)[::-1]]
+    rate, peak = max(peaks)
+    _, name = growth_and_combination(model.system(peak))
+    return replace(tongue, peak=peak, growth_rate=rate, combination=name)
 
 
 def unstable_share(found: Sequence[Tongue], speeds: tuple[float, float]) -> float:
@@ -195,6 +217,12 @@ class SettledTongues:
         rates = [max((t.growth_rate for t in step.tongues), default=math.nan) for step in self.steps[-2:]]
         return abs(rates[0] / rates[1] - 1.0) if len(rates) == 2 else math.nan
 
+    @property
+    def may_open(self) -> bool:
+        """Whether all of a narrow range is unstable, by a growth that still moves: a gap may open in a tongue."""
+        low, high = self.speeds
+        return high / low < _WIDE and self.unstable_share == 1.0 and not self.growth_moved <= _GROWTH_MOVED
+
 
 def settled_tongues(
     model: FaceGears,
@@ -207,8 +235,10 @@ def settled_tongues(
 ) -> SettledTongues:
     """Tongues of a drive in a basis that is raised until they stand still.
 
-    Two nodal diameters are added in each step, and a nodal circle where it changes the static stiffness of the disk at
-    its teeth by a third or more of what they do; the bearing stays as it is (:func:`with_basis`).
+    In a narrow range they must do so twice in succession, and where all of it is unstable the largest growth rate must
+    have settled as well, to a tenth. Two nodal diameters are added in each step, and a nodal circle where that changes
+    the static stiffness of the disk at its teeth by a third or more of what they do; the bearing stays as it is
+    (:func:`with_basis`).
 
     Parameters
     ----------
@@ -241,15 +271,17 @@ def settled_tongues(
     judged = speeds if around is None else around
     steps: list[BasisStep] = []
     before: tuple[Tongue, ...] = ()
-    shown = model
+    shown, still = model, 0
     for circles, diameters in _bases(model.gear.body, most_steps):
         shown = with_basis(model, circles, diameters) if steps else model
         found = tuple(known) if known is not None and not steps else found_around(shown, judged)
         here = within(shown, found, speeds)
         moved = disagreement(steps[-1].tongues, here, speeds) if steps else math.nan
         steps.append(BasisStep(circles, diameters, here, moved))
-        if len(steps) > 1 and _stands_still(before, found, judged, tolerance):
-            return SettledTongues(shown, speeds, tuple(steps), settled=True)
+        still = still + 1 if len(steps) > 1 and _stands_still(before, found, judged, tolerance) else 0
+        known_so_far = SettledTongues(shown, speeds, tuple(steps), settled=True)
+        if still >= (1 if judged[1] / judged[0] >= _WIDE else 2) and not known_so_far.may_open:
+            return known_so_far
         before = found
     return SettledTongues(shown, speeds, tuple(steps), settled=False)
 
@@ -258,13 +290,35 @@ def _stands_still(
     before: Sequence[Tongue], found: Sequence[Tongue], speeds: tuple[float, float], tolerance: float
 ) -> bool:
     """Whether two bases agree in a range, and would if borders outside of it moved on."""
-    if bool(before) != bool(found):
+    if _without_partner(before, found, speeds) or _without_partner(found, before, speeds):
         return False
     one, other = (united([(tongue.lower, tongue.upper) for tongue in each]) for each in (before, found))
     return all(
         _apart(each, other, speeds) <= tolerance and bool(cut(each, speeds)) == bool(cut(other, speeds))
         for each in (one, *_moved_on(before, found, speeds))
     )
+
+
+def _overlap(one: Tongue, other: Tongue) -> bool:
+    return one.lower < other.upper and other.lower < one.upper
+
+
+def _without_partner(found: Sequence[Tongue], others: Sequence[Tongue], speeds: tuple[float, float]) -> bool:
+    """Whether a tongue as near to a range as twice its width overlaps none of others: it has come or gone whole."""
+    low, high = speeds
+    return any(
+        0.0 < max(tongue.lower - high, low - tongue.upper) < _ONWARD * tongue.width
+        and not any(_overlap(tongue, other) for other in others)
+        for tongue in found
+    )
+
+
+def _before(tongue: Tongue, before: Sequence[Tongue], found: Sequence[Tongue]) -> tuple[float, float]:
+    """Borders of a tongue in a basis before: of one that it overlaps, or the nearest that none overlaps, or its own."""
+    free = [other for other in before if not any(_overlap(each, other) for each in found)]
+    others = [other for other in before if _overlap(tongue, other)] or free or [tongue]
+    was = min(others, key=lambda other: abs(other.lower - tongue.lower) + abs(other.upper - tongue.upper))
+    return was.lower, was.upper
 
 
 def _moved_on(
@@ -277,10 +331,9 @@ def _moved_on(
     low, high = speeds
     coming, going = [], []
     for tongue in found:
-        ends = (tongue.lower, tongue.upper)
-        was = min(before, key=lambda other: abs(other.lower - tongue.lower) + abs(other.upper - tongue.upper))
-        up, down = (_ONWARD * abs(end - old) for end, old in zip(ends, (was.lower, was.upper), strict=True))
-        lower, upper = ends
+        lower, upper = ends = (tongue.lower, tongue.upper)
+        was = _before(tongue, before, found)
+        up, down = (_ONWARD * abs(end - old) for end, old in zip(ends, was, strict=True))
         if lower > high or upper < low:
             coming.append((lower - up, upper) if lower > high else (lower, upper + down))
             going.append(ends)

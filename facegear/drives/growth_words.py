@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from facegear.drives.findings import TORSION
-from facegear.drives.intervals import Intervals, cut, gaps, in_rpm
+from facegear.drives.intervals import Intervals, cut, gaps, in_rpm, inward
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
@@ -123,7 +123,11 @@ def _outcome(case: WorstCase) -> str:
     left = tuple(part for gap in gaps(case.swept, case.speeds) for part in cut(case.possible, gap))
     free = gaps(case.possible, case.speeds)
     rest = f"; not known at {told(left)}, where something may be unstable between {looked}" if left else ""
-    rest += f"; stable at {told(free)}" if free else "; at no speed known to be stable for all of its values"
+    rest += (
+        f"; stable at {told(inward(free))}"
+        if free
+        else "; at no speed known to be stable for all of its values"
+    )
     if not case.swept:
         return rest.removeprefix("; ")
     words = f"unstable for some values at {told(case.swept)}, {100 * case.share:.3g} % of the speeds"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 
-from facegear.support.parameters import rpm
+from facegear.support.parameters import rad_per_s, rpm
 
 Intervals = tuple[tuple[float, float], ...]
 """Lower and upper ends."""
@@ -53,6 +54,25 @@ def cut(intervals: Sequence[tuple[float, float]], speeds: tuple[float, float]) -
     low, high = speeds
     found = ((max(start, low), min(stop, high)) for start, stop in intervals)
     return tuple((start, stop) for start, stop in found if stop > start)
+
+
+def inward(intervals: Sequence[tuple[float, float]]) -> Intervals:
+    """Shrink intervals [rad/s] to ends that four digits in rpm show as they are: of what is called stable none is more.
+
+    Examples
+    --------
+    >>> from facegear.support.parameters import rad_per_s
+    >>> in_rpm(inward([(rad_per_s(70.001), rad_per_s(70.002)), (rad_per_s(97.331), rad_per_s(1028.7))]), 9)
+    '97.34 to 1028 rpm'
+    """
+
+    def shown(speed: float, rounded: Callable[[float], int], slack: float) -> float:
+        # An end that is shown as it is stays, rounding aside.
+        digit = 10.0 ** (math.floor(math.log10(rpm(speed))) - 3)
+        return float(rad_per_s(rounded(rpm(speed) / digit + slack) * digit))
+
+    ends = [(shown(start, math.ceil, -1e-6), shown(stop, math.floor, 1e-6)) for start, stop in intervals]
+    return tuple((low, high) for low, high in ends if low < high)
 
 
 def in_rpm(intervals: Sequence[tuple[float, float]], most: int) -> str:

@@ -14,6 +14,7 @@ from facegear.drives.basis import (
     settled_tongues,
     unstable_share,
     with_basis,
+    within,
 )
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.variants import plain_contacts
@@ -146,7 +147,12 @@ class TestSettledTongues:
             ((interval(9.0, 11.1),), (interval(9.0, 11.0),), True),
             # What comes from one side does not make up for what goes.
             ((interval(9.0, 13.0),), (interval(9.0, 11.0), interval(12.0, 13.0)), False),
-            ((), (interval(12.0, 13.0),), False),
+            # One that is new and narrow, and far from the range; one that has moved by more than its width.
+            ((interval(8.0, 9.0),), (interval(8.0, 9.0), interval(12.0, 12.5)), True),
+            ((interval(11.5, 11.6),), (interval(11.0, 11.1),), False),
+            ((), (interval(10.5, 12.0),), False),
+            # One beside the range that is gone, though another has stayed.
+            ((interval(8.0, 9.0), interval(11.0, 12.0)), (interval(8.0, 9.0),), False),
             ((), (), True),
         ):
             assert basis._stands_still(before, found, narrow, 0.02) is stands
@@ -169,6 +175,30 @@ class TestSettledTongues:
         basis.found_around(None, (99.0, 101.0))
         ((low, high),) = asked
         assert (high / low, low * high) == (pytest.approx(1.5), pytest.approx(99.0 * 101.0))
+
+    def test_a_narrow_range_that_is_all_unstable_asks_for_growth_that_has_settled(self):
+        narrow, wide = (10.0, 10.5), (10.0, 20.0)
+        for speeds, rates, opens in (
+            (narrow, (5.0, 4.0), True),
+            (narrow, (4.2, 4.0), False),
+            (wide, (5.0, 4.0), False),
+        ):
+            steps = tuple(BasisStep(1, 3, (replace(interval(*speeds), growth_rate=r),), 0.0) for r in rates)
+            assert SettledTongues(CASE_1, speeds, steps, settled=True).may_open is opens
+
+    def test_of_a_part_of_a_tongue_the_largest_growth_there_is_found_and_named(self):
+        # Two resonances have grown together, and the part has the slope of one and the peak of the other.
+        low, high = (float(rad_per_s(value)) for value in (560.0, 700.0))
+        (whole, *_) = found = tongues(CASE_1, (low, high))
+        middle = (whole.lower + whole.upper) / 2.0
+        for speeds in ((low, middle), (middle, high)):
+            for part in within(CASE_1, found, speeds):
+                tried = [
+                    growth_rate(CASE_1.system(speed)) for speed in np.linspace(part.lower, part.upper, 101)
+                ]
+                assert part.growth_rate >= max(tried) * (1.0 - 1e-6)
+                assert speeds[0] <= part.lower <= part.peak <= part.upper <= speeds[1]
+                assert growth_rate(CASE_1.system(part.peak)) == pytest.approx(part.growth_rate, rel=1e-9)
 
     def test_growth_that_moves_is_told(self):
         steps = tuple(

@@ -290,7 +290,7 @@ def test_a_forced_response_stands_once_on_the_page_and_its_rms_is_of_what_varies
     assert "rms of what varies of the force [N]" in page
     for name in ("disk_response.csv", "disk_response_peaks.csv"):
         heading = (tmp_path / name).read_text(encoding="utf-8-sig").partition("\n")[0]
-        assert "force_rms_of_what_varies_N,force_lowest_N" in heading
+        assert "force_rms_of_what_varies_N,force_lowest_less_static_N" in heading
 
 
 def test_where_flanks_would_part_is_said_right_behind_the_verdict(tmp_path):
