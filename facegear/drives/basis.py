@@ -84,12 +84,18 @@ def with_basis(model: FaceGears, nodal_circles: int, nodal_diameters: int) -> Fa
     return model.with_gear(replace(gear, body=body, load=load, force=force))
 
 
+def _is_narrow(speeds: tuple[float, float]) -> bool:
+    low, high = speeds
+    return high / low < _WIDE
+
+
 def found_around(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
     """Trace tongues in a range, and beside it where the range is narrow or none is in it."""
     low, high = speeds
-    further = math.sqrt(max(1.0, _WIDE * low / high))
-    found = traced(model, (low / further, high * further))
-    if found or further > 1.0:
+    if _is_narrow(speeds):
+        further = math.sqrt(_WIDE * low / high)
+        return traced(model, (low / further, high * further))
+    if found := traced(model, speeds):
         return found
     return (*traced(model, (low / _BESIDE, low)), *traced(model, (high, high * _BESIDE)))
 
@@ -220,8 +226,9 @@ class SettledTongues:
     @property
     def may_open(self) -> bool:
         """Whether all of a narrow range is unstable, by a growth that still moves: a gap may open in a tongue."""
-        low, high = self.speeds
-        return high / low < _WIDE and self.unstable_share == 1.0 and not self.growth_moved <= _GROWTH_MOVED
+        return (
+            _is_narrow(self.speeds) and self.unstable_share == 1.0 and not self.growth_moved <= _GROWTH_MOVED
+        )
 
 
 def settled_tongues(
@@ -279,9 +286,9 @@ def settled_tongues(
         moved = disagreement(steps[-1].tongues, here, speeds) if steps else math.nan
         steps.append(BasisStep(circles, diameters, here, moved))
         still = still + 1 if len(steps) > 1 and _stands_still(before, found, judged, tolerance) else 0
-        known_so_far = SettledTongues(shown, speeds, tuple(steps), settled=True)
-        if still >= (1 if judged[1] / judged[0] >= _WIDE else 2) and not known_so_far.may_open:
-            return known_so_far
+        settled = SettledTongues(shown, speeds, tuple(steps), settled=True)
+        if still >= (2 if _is_narrow(judged) else 1) and not settled.may_open:
+            return settled
         before = found
     return SettledTongues(shown, speeds, tuple(steps), settled=False)
 

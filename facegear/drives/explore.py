@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from facegear.drives.cell import UNSTABLE, CellDetail, cell_detail
 from facegear.drives.studies.study import Quantity, Settings, Study
-from facegear.floquet.models import Model, parameter_path, replace_parameter
+from facegear.floquet.models import Model, replace_parameter
 from facegear.maps.axes import periods_at
 from facegear.maps.sweep import Sweep
 from facegear.maps.ways import Way
@@ -47,10 +47,8 @@ def map_stages(
         Growth rates [1/s], with the period [s] of each speed as a coordinate. In the first, cells that are not yet
         computed have the value of a neighbour; attribute ``computed`` is the part of the cells that are final.
     """
-    way, name = (
-        Way.of(Sweep(model, parameter, tuple(values.tolist()), None), speeds),
-        parameter_path(model, parameter)[-1],
-    )
+    way = _way(model, speeds, parameter, values)
+    name = way.sweep.path[-1]
     columns = np.arange(min(_COLUMN_STEP // 2, speeds.size - 1), speeds.size, _COLUMN_STEP)
     step = 1 if way.name == "loads" else _ROW_STEP
     rows = np.arange(min(step // 2, values.size - 1), values.size, step)
@@ -89,7 +87,7 @@ def _parts(rows: int) -> list[NDArray[np.int64]]:
 
 def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
     """Return the last stage of :func:`map_stages` without those before it."""
-    way = Way.of(Sweep(model, parameter, tuple(values.tolist()), None), speeds)
+    way = _way(model, speeds, parameter, values)
     return _labelled(way.sweep.path[-1], values, speeds, _growth(way), periods_at(model, speeds), 1.0)
 
 
@@ -108,6 +106,10 @@ def _labelled(
         name="growth_rate",
         attrs={"units": "1/s", "computed": computed},
     )
+
+
+def _way(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> Way:
+    return Way.of(Sweep(model, parameter, tuple(values.tolist()), None), speeds)
 
 
 def _growth(way: Way) -> FloatArray:
