@@ -48,17 +48,19 @@ def map_stages(
         every ``column_step``-th speed.
     """
     way, periods = _way(model, speeds, parameter, values), periods_at(model, speeds)
-    plan = Plan.of(model, float(speeds[-1]), by_columns=way.name in ("columns", "loads"))
-    growth, done = np.full((values.size, speeds.size), np.nan), plan.steps[0]
+    plan = Plan.of(model, speeds, by_columns=way.name in ("columns", "loads"))
+    growth = np.full((values.size, speeds.size), np.nan)
     for stage, steps in enumerate(plan.steps):
+        before = plan.steps[max(stage - 1, 0)]
         pieces = list(plan.pieces(growth, stage))
         for number, (rows, columns) in enumerate(pieces, 1):
             for found in _growth_in_tasks(way.part(rows, columns)):
                 if found is not None:
                     growth[np.ix_(rows, columns)] = found
-                    done = steps if number == len(pieces) else done
-                if stage > 0 or number == len(pieces):
-                    yield _labelled(way, plan.shown(growth, stage), periods, np.isfinite(growth).mean(), done)
+                complete = found is not None and number == len(pieces)
+                if stage > 0 or complete:
+                    shown, computed = plan.shown(growth, stage), float(np.isfinite(growth).mean())
+                    yield _labelled(way, shown, periods, computed, steps if complete else before)
 
 
 def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:

@@ -20,11 +20,12 @@ from facegear.support.types import FloatArray
 _BY_CELLS = ((8, 4), (4, 4), (2, 4), (2, 2), (2, 1), (1, 1))
 _BY_COLUMNS = ((8, 4), (1, 4), (1, 2), (1, 1))
 _ALL_COLUMNS = ((8, 4), (1, 1))
-# Coordinates times loads up to which all columns, which are cheaper together, take less than a second.
-_LIGHT = 20
-# What a piece has at most: cells, or columns, times coordinates times loads; and of how many cells at once it is worth
-# the while.
-_CELLS, _COLUMNS, _FEWEST = 4000, 250, 30
+# The weight of a cell is coordinates times loads, more where periods are long: that of a motion which turns by so many
+# radians in one is twice that of none. Up to some weight all columns, which are cheaper together, take less than a
+# second.
+_TWICE, _LIGHT = 60.0, 25.0
+# Weight of the cells of a piece, and of one row of its columns; and of how many cells at once it is worth the while.
+_CELLS, _COLUMNS, _FEWEST = 5000.0, 320.0, 30
 
 Piece = tuple[NDArray[np.intp], NDArray[np.intp]]
 """Numbers of rows and of columns, ascending."""
@@ -49,16 +50,15 @@ class Plan:
     columns: int | None
 
     @classmethod
-    def of(cls, model: Model, speed: float, *, by_columns: bool) -> Plan:
-        """Plan the map of a model, as costly as it is at a speed [rad/s]."""
-        system = model.system(speed)
-        weight = system.size * max(len(system.loads), 1)
-        cells = max(_FEWEST, _CELLS // weight)
+    def of(cls, model: Model, speeds: FloatArray, *, by_columns: bool) -> Plan:
+        """Plan the map of a model at speeds (S,) [rad/s]."""
+        weight = _weight(model, speeds)
+        cells = max(_FEWEST, int(_CELLS / weight))
         if not by_columns:
             return cls(_BY_CELLS, cells, None)
         if weight <= _LIGHT:
-            return cls(_ALL_COLUMNS, cells, np.iinfo(int).max)
-        return cls(_BY_COLUMNS, cells, max(1, _COLUMNS // weight))
+            return cls(_ALL_COLUMNS, cells, speeds.size)
+        return cls(_BY_COLUMNS, cells, max(1, int(_COLUMNS / weight)))
 
     def grid(self, stage: int, shape: tuple[int, ...]) -> Piece:
         """Rows and columns of a stage, by its number, among (V, S): those of the stages before are among them."""
@@ -92,6 +92,15 @@ class Plan:
             own = growth[np.ix_(*(_nearest(*each) for each in zip(grid, growth.shape, strict=True)))]
             found = np.where(np.isnan(own), found, own)
         return np.where(np.isnan(growth), found, growth)
+
+
+def _weight(model: Model, speeds: FloatArray) -> float:
+    """Cost of a cell, about, in units of a slow coordinate under one load."""
+    fastest = float(speeds[-1])
+    system = model.system(fastest)
+    squares = np.abs(np.linalg.eigvals(np.linalg.solve(system.mass, system.stiffness)))
+    turn = float(np.sqrt(squares.max())) * system.period * float((fastest / speeds).mean())
+    return system.size * max(len(system.loads), 1) * (1.0 + turn / _TWICE)
 
 
 def _in_parts(numbers: NDArray[np.intp], size: int) -> list[NDArray[np.intp]]:
