@@ -39,8 +39,9 @@ from facegear.plotting.style import GROWTH, WIDTH, styled
 from facegear.support.types import FloatArray
 
 _REFUSALS = (TypeError, ValueError, ArithmeticError)
-# Seconds from one drawing of a map that grows to the next, at least: a browser draws no faster.
-_APART = 0.1
+# Seconds of computing after which it is heard what a reader has changed meanwhile, and after which a map that grows is
+# drawn anew: browsers take their time.
+_HEARD, _APART = 0.05, 0.2
 _ORDINALS = {1: "every", 2: "every second", 4: "every fourth", 8: "every eighth"}
 
 
@@ -282,7 +283,7 @@ class MapExplorer:
 
     def _refine(self, stages: Iterator[xr.DataArray], turn: int) -> Iterator[None]:
         """Draw the map as it grows, then the cell, unless a control has changed meanwhile."""
-        started = drawn = time.perf_counter()
+        started = drawn = heard = time.perf_counter()
         try:
             yield
             while turn == self._turn and (chart := next(stages, None)) is not None:
@@ -290,7 +291,9 @@ class MapExplorer:
                 if whole or now > drawn + _APART:
                     self._draw(chart)
                     drawn = now
+                if now > heard + _HEARD:
                     yield
+                    heard = time.perf_counter()
             if turn == self._turn:
                 self._show_cell()
                 rows, columns = self._chart.shape

@@ -209,7 +209,8 @@ def test_the_last_of_two_quick_changes_wins(widget):
 
 def test_a_change_ends_a_map_that_is_being_filled(widget, monkeypatch):
     """Piece by piece, and the status says how far it is."""
-    monkeypatch.setattr(explorer, "_APART", 0.0)
+    for seconds in ("_HEARD", "_APART"):
+        monkeypatch.setattr(explorer, seconds, 0.0)
     taken = []
 
     def noted(*given):
