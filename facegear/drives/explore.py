@@ -48,7 +48,7 @@ def map_stages(
         every ``column_step``-th speed.
     """
     way, periods = _way(model, speeds, parameter, values), periods_at(model, speeds)
-    plan = Plan.of(model, speeds, by_columns=way.name in ("columns", "loads"))
+    plan = Plan.of(model, speeds, way.name)
     growth = np.full((values.size, speeds.size), np.nan)
     for stage, steps in enumerate(plan.steps):
         before = plan.steps[max(stage - 1, 0)]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,9 @@ from facegear.floquet.models import Model
 from facegear.support.types import FloatArray
 
 # Rows first: speeds are half again as many.
-_BY_CELLS = ((8, 4), (4, 4), (2, 4), (2, 2), (2, 1), (1, 1))
+_BY_ROWS = ((8, 4), (4, 4), (2, 4), (2, 2), (2, 1), (1, 1))
+# Of small systems all speeds of a row take little longer than some.
+_BY_CELLS = ((8, 4), (2, 1), (1, 1))
 _BY_COLUMNS = ((8, 4), (1, 4), (1, 2), (1, 1))
 _ALL_COLUMNS = ((8, 4), (1, 1))
 # The weight of a cell is coordinates times loads, more where periods are long: that of a motion which turns by so many
@@ -27,6 +30,7 @@ _TWICE, _LIGHT = 60.0, 25.0
 # Weight of the cells of a piece, and of one row of its columns; and of how many cells at once it is worth the while.
 _CELLS, _COLUMNS, _FEWEST = 5000.0, 320.0, 30
 
+Goes = Literal["cells", "loads", "columns", "rows"]
 Piece = tuple[NDArray[np.intp], NDArray[np.intp]]
 """Numbers of rows and of columns, ascending."""
 
@@ -50,12 +54,12 @@ class Plan:
     columns: int | None
 
     @classmethod
-    def of(cls, model: Model, speeds: FloatArray, *, by_columns: bool) -> Plan:
-        """Plan the map of a model at speeds (S,) [rad/s]."""
+    def of(cls, model: Model, speeds: FloatArray, way: Goes) -> Plan:
+        """Plan the map of a model at speeds (S,) [rad/s] by what :attr:`facegear.maps.ways.Way.name` says."""
         weight = _weight(model, speeds)
         cells = max(_FEWEST, int(_CELLS / weight))
-        if not by_columns:
-            return cls(_BY_CELLS, cells, None)
+        if way in ("rows", "cells"):
+            return cls(_BY_ROWS if way == "rows" else _BY_CELLS, cells, None)
         if weight <= _LIGHT:
             return cls(_ALL_COLUMNS, cells, speeds.size)
         return cls(_BY_COLUMNS, cells, max(1, int(_COLUMNS / weight)))

@@ -237,7 +237,7 @@ def test_a_change_ends_a_map_that_is_being_filled(widget, monkeypatch):
     assert re.fullmatch(
         r"refining: every eighth row at every fourth speed and \d+% of all cells are final", coarse
     )
-    assert "every fourth row at every fourth speed" in finer
+    assert "every second row at every speed" in finer
     assert taken[0] == 3
     assert taken[1] > 3
     assert "refined in" in text(widget.status)

@@ -18,18 +18,18 @@ DRIVES = {
 }
 
 
-def planned(name, *, by_columns):
+def planned(name, way):
     study, changes = DRIVES[name]
     settings = study.settings(changes)
     speeds, _ = study.axes(settings, study.vertical)
-    return Plan.of(study.model(settings), speeds, by_columns=by_columns)
+    return Plan.of(study.model(settings), speeds, way)
 
 
-@pytest.mark.parametrize("by_columns", [True, False])
+@pytest.mark.parametrize("way", ["cells", "loads", "columns", "rows"])
 @pytest.mark.parametrize("name", DRIVES)
 @pytest.mark.parametrize("shape", [(40, 60), (20, 40), (17, 12), (2, 2), (1, 3)])
-def test_stages_fill_a_map_piece_by_piece_and_no_cell_twice_but_those_of_the_first(name, by_columns, shape):
-    plan, times = planned(name, by_columns=by_columns), np.zeros(shape, dtype=int)
+def test_stages_fill_a_map_piece_by_piece_and_no_cell_twice_but_those_of_the_first(name, way, shape):
+    plan, times = planned(name, way), np.zeros(shape, dtype=int)
     growth, parts = np.full(shape, np.nan), []
     for stage in range(len(plan.steps)):
         for rows, columns in plan.pieces(growth, stage):
@@ -45,14 +45,14 @@ def test_stages_fill_a_map_piece_by_piece_and_no_cell_twice_but_those_of_the_fir
     first = np.zeros(shape, dtype=bool)
     first[np.ix_(*plan.grid(0, shape))] = True
     assert (times[~first] == 1).all()
-    assert (times <= (2 if by_columns else 1)).all()
+    assert (times <= (2 if way in ("loads", "columns") else 1)).all()
 
 
-@pytest.mark.parametrize("by_columns", [True, False])
+@pytest.mark.parametrize("way", ["loads", "columns", "rows"])
 @pytest.mark.parametrize("name", ["three pinions", "two gears", "two gears, shared load"])
-def test_a_costly_drive_has_a_map_that_can_be_read_after_a_quarter_of_its_cells(name, by_columns):
+def test_a_costly_drive_has_a_map_that_can_be_read_after_a_quarter_of_its_cells(name, way):
     """Each of them takes up to four seconds for all of its cells, so a second for a quarter."""
-    plan, shape = planned(name, by_columns=by_columns), (40, 60)
+    plan, shape = planned(name, way), (40, 60)
     growth, first = np.full(shape, np.nan), None
     for stage, (row_step, column_step) in enumerate(plan.steps):
         for rows, columns in plan.pieces(growth, stage):
@@ -60,17 +60,17 @@ def test_a_costly_drive_has_a_map_that_can_be_read_after_a_quarter_of_its_cells(
         first = np.isfinite(growth).mean() if first is None else first
         if row_step * column_step == 4:
             break
-    assert row_step <= 2 or by_columns
+    assert row_step <= 2
     # Besides them there are the cells of the first stage, if whole columns follow.
     assert np.isfinite(growth).mean() <= 0.25 + first
     assert first < 0.04
 
 
-@pytest.mark.parametrize("by_columns", [True, False])
+@pytest.mark.parametrize("way", ["loads", "columns", "rows"])
 @pytest.mark.parametrize("name", ["three pinions", "two gears", "two gears, shared load"])
-def test_pieces_of_a_costly_drive_are_short(name, by_columns):
+def test_pieces_of_a_costly_drive_are_short(name, way):
     """A change is heard between them: of 2400 cells none has more than a twelfth."""
-    plan, growth = planned(name, by_columns=by_columns), np.full((40, 60), np.nan)
+    plan, growth = planned(name, way), np.full((40, 60), np.nan)
     for stage in range(len(plan.steps)):
         for rows, columns in list(plan.pieces(growth, stage)):
             assert rows.size * columns.size <= 200
@@ -78,7 +78,7 @@ def test_pieces_of_a_costly_drive_are_short(name, by_columns):
 
 
 def test_of_a_light_drive_whole_columns_are_one_piece():
-    plan, growth = planned("one pinion", by_columns=True), np.full((40, 60), np.nan)
+    plan, growth = planned("one pinion", "loads"), np.full((40, 60), np.nan)
     ((rows, columns),) = plan.pieces(growth, 1)
     assert plan.steps[1] == (1, 1)
     assert (rows.size, columns.size) == (40, 60)
@@ -90,14 +90,14 @@ def test_slow_drives_have_shorter_pieces_and_more_stages():
     study, _ = DRIVES["one pinion"]
     settings = study.settings({"highest_speed": 100.0})
     speeds, _ = study.axes(settings, study.vertical)
-    slow = Plan.of(study.model(settings), speeds, by_columns=True)
-    usual = planned("one pinion", by_columns=True)
+    slow = Plan.of(study.model(settings), speeds, "loads")
+    usual = planned("one pinion", "loads")
     assert slow.cells < usual.cells
     assert len(slow.steps) > len(usual.steps)
 
 
 def test_a_cell_that_is_not_there_has_the_value_of_its_neighbour_in_the_finest_stage_that_has_one():
-    plan = planned("one pinion", by_columns=False)
+    plan = planned("one pinion", "rows")
     growth = np.full((16, 16), np.nan)
     for stage in range(2):
         growth[np.ix_(*plan.grid(stage, growth.shape))] = float(stage)
