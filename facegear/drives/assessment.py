@@ -224,7 +224,9 @@ class Assessment:
             )
         # The first of equal ones, a model before a corner that is the same.
         name, strongest = max(unstable, key=lambda pair: pair[1].growth_rate)
-        return f"{mechanism(strongest)} ({name})"
+        low, high = self.speeds
+        where = "" if low <= strongest.peak <= high else ", outside the range, in the tolerance of speed"
+        return f"{mechanism(strongest)} ({name}{where})"
 
     @property
     def over_tolerances(self) -> tuple[str, ...]:

@@ -32,6 +32,7 @@ class _Row(NamedTuple):
     settled: float = math.nan
     nodal_circles: float = math.nan
     nodal_diameters: float = math.nan
+    growth_moved: float = math.nan
 
     @property
     def fastest(self) -> Tongue | None:
@@ -43,7 +44,7 @@ def _row(outcome: Outcome, speeds: tuple[float, float]) -> _Row:
     variant, body = outcome.variant, outcome.variant.model.gear.body
     names = (DISK, variant.contact, variant.force, variant.teeth)
     basis = (float(body.nodal_circles), float(body.nodal_diameters))
-    return _Row(*names, outcome.tongues, speeds, float(outcome.settled), *basis)
+    return _Row(*names, outcome.tongues, speeds, float(outcome.settled), *basis, outcome.growth_moved)
 
 
 def model_table(
@@ -70,8 +71,9 @@ def model_table(
     -------
     xarray.Dataset
         Over ``model``, the disk's first: ``unstable_share`` [-], ``largest_growth`` [1/s], at ``fastest_speed``
-        [rad/s], ``tongues``; ``settled`` and the basis, ``nodal_circles`` and ``nodal_diameters``, NaN in torsion;
-        motion, contact, force and teeth, label of what grows fastest and unstable speeds in rpm as coordinates of text.
+        [rad/s], ``tongues``; ``settled``, the basis, ``nodal_circles`` and ``nodal_diameters``, and ``growth_moved``,
+        the part by which the growth differs in the basis before [-], NaN in torsion; motion, contact, force and teeth,
+        label of what grows fastest and unstable speeds in rpm as coordinates of text.
     """
     rows = [_row(outcome, speeds) for outcome in outcomes]
     rows += [_Row(TORSION, name, "", "", found, wide) for name, found in torsion.items()]
@@ -88,6 +90,7 @@ def model_table(
         "settled": ([row.settled for row in rows], "1", 0.0, 0.1),
         "nodal_circles": ([row.nodal_circles for row in rows], "1", 0.0, 0.1),
         "nodal_diameters": ([row.nodal_diameters for row in rows], "1", 0.0, 0.1),
+        "growth_moved": ([row.growth_moved for row in rows], "1", 1e-4, 1e-4),
     }
     meanings = {
         "unstable_share": "Unstable part of the speeds",
@@ -97,6 +100,7 @@ def model_table(
         "settled": "1 where the basis suffices",
         "nodal_circles": "Nodal circles of the basis",
         "nodal_diameters": "Nodal diameters of the basis",
+        "growth_moved": "Part by which the largest growth rate differs in the basis before",
     }
     names = {
         "motion": "Motion",

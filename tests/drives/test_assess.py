@@ -258,7 +258,9 @@ def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all
 def test_models_are_listed_with_their_basis_and_those_of_torsion_too(tmp_path):
     """Each in its own basis, which is not that of the file, as the provenance says."""
     richer = with_basis(CASE_1.transverse, 2, 5)
-    disk = Outcome(Variant("Tregold", DEAD, RIGID, richer), (tongue(200, 300), tongue(400, 410, 3.0)), True)
+    disk = Outcome(
+        Variant("Tregold", DEAD, RIGID, richer), (tongue(200, 300), tongue(400, 410, 3.0)), True, 0.04
+    )
     file = replace(CASE_1, tolerances=Tolerances(speed=0.1))
     found = assessment(disk, torsion={"Tregold, arm as printed": (tongue(95, 97, 90.0),)}, file=file)
     table = found.table()
@@ -281,7 +283,9 @@ def test_models_are_listed_with_their_basis_and_those_of_torsion_too(tmp_path):
     )
     rows = (tmp_path / "models.csv").read_text(encoding="utf-8-sig").splitlines()
     assert rows[1].startswith("disk,Tregold,")
-    assert ",2,5,(1+8)/1,200 to 300; 400 to 410" in rows[1]
+    assert ",2,5,0.04,(1+8)/1,200 to 300; 400 to 410" in rows[1]
+    # What grows fastest of all does so beyond the operating speeds.
+    assert "at 96 rpm, growing by 90 1/s (torsion; Tregold, arm as printed, outside the range" in text
     assert rows[2].startswith('torsion,"Tregold, arm as printed",,,')
 
 
