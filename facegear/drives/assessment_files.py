@@ -49,7 +49,8 @@ _WORDS = (
     "same; length, each as its line is long, so that the mesh is as stiff as the lines are; length_share, each its "
     "part of the length of all, so that the mesh is as stiff at all times.",
     "(1+8)/1: natural motions 1 and 8, numbered by frequency, whose frequencies make up once the mesh frequency; "
-    "(8-1)/1: their difference does. mean 1: natural motion 1 grows by itself (flutter).",
+    "(8-1)/1: their difference does. mean 1: natural motion 1 grows by itself, oscillating (flutter); "
+    "mean 0: what grows by itself does not oscillate (divergence).",
     "10/1: natural motion 10 in resonance with the first harmonic of the mesh.",
 )
 

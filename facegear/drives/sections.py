@@ -114,8 +114,9 @@ def unstable_speeds(found: Findings) -> Section:
     )
     names = Paragraph(
         "A name such as (1+8)/1 gives the natural frequencies of the mean system that combine, numbered from "
-        "the lowest, "
-        'and how many times the mesh frequency equals their combination; "mean 1" is flutter of the mean system.'
+        "the lowest, and how many times the mesh frequency equals their combination. mean 1: natural motion 1 of the "
+        "mean system grows by itself, oscillating (flutter); mean 0: what grows by itself does not oscillate "
+        "(divergence)."
     )
     rows: list[tuple[str, ...]] = []
     for name, part in found.tongue_tables.items():

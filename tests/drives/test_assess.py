@@ -1,5 +1,6 @@
 """An assessment: what follows from what its models come to, and that these are what they are called."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -116,6 +117,15 @@ class TestVerdict:
             "200, 290 to 1000 rpm.",
         )
         assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+
+    @pytest.mark.parametrize(("number", "kind"), [(1, "flutter"), (0, "divergence")])
+    def test_what_grows_by_itself_is_called_by_its_name(self, tmp_path, number, kind):
+        """A motion that does not oscillate was called a flutter, and its name explained nowhere."""
+        alone = replace(tongue(240, 260, 7.5), combination=Combination(number, number, "mean", 0))
+        found = assessment(outcome("Tregold", DEAD, RIGID, alone))
+        text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
+        assert f"Worst: {kind} of the mean system, mean {number} at 250 rpm" in text
+        assert re.search(rf"mean {number}: [^:]*\({kind}\)", text)
 
     def test_growth_at_a_value_in_the_tolerances_is_told(self, tmp_path):
         """A corner that grows faster than every model at the values of the file is the worst, with its factors."""
