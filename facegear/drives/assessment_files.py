@@ -127,7 +127,8 @@ def _models(found: Assessment) -> Section:
     names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
     headings = (*names, *_FASTEST, _BASIS, "settled")
     words = Paragraph(
-        "Settled: the unstable speeds of two bases agree; in a narrow range of three, also if borders beside it came "
+        "Settled: the unstable speeds of two bases agree, of which the larger has all modes of the disk up to the mesh "
+        "frequency; in a narrow range of three, also if borders beside it came "
         "nearer by twice as much as they moved. Growth rates are those of the basis that stands beside them; in "
         "brackets, by how much of itself the largest differs in the basis before."
     )

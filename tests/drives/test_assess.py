@@ -13,6 +13,8 @@ from facegear.drives.assess import _Found, _in_torsion, _Tried, assess
 from facegear.drives.assessment import Assessment
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.basis import with_basis
+from facegear.drives.disk_response import RIGID as RIGID_TEETH
+from facegear.drives.disk_response import DiskResponse
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.findings import TORSION, Findings
 from facegear.drives.growth_words import told
@@ -61,6 +63,15 @@ class TestVerdict:
             "Speeds at which every model is known to be stable: 100 to 1000 rpm. "
             "Speeds at which all models are unstable: no speed."
         )
+
+    def test_that_nobody_knows_whether_flanks_part_is_said_beside_safe(self):
+        safe = outcome("Tregold", DEAD, RIGID)
+        words = "Whether flanks stay in contact under the load of the drive is not known (Dynamic load)."
+        for reason, known in ((RIGID_TEETH, True), ("between two gears it is not computed", False)):
+            response = DiskResponse(safe.variant, 0.0, None, reason)
+            found = replace(assessment(safe), disk_responses=(response,))
+            assert found.verdict == "safe under all"
+            assert (words in found.headline) == (not known)
 
     def test_unstable_under_all_though_not_at_the_same_speeds(self):
         found = assessment(
@@ -250,7 +261,14 @@ class TestVerdict:
 
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
-        assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn it.")
+        assert "NOT SETTLED in 1 of 1 models: a larger basis may turn it." in found.headline
+        # Nothing unstable was found, and that is not enough to be safe.
+        assert found.verdict == "depends"
+        assert found.decides == ("bases that have not settled",)
+        assert (
+            "no model was found unstable, which does not make them stable: 100 to 1000 rpm" in found.headline
+        )
+        assert "every model is known to be stable" not in found.headline
 
 
 def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all():
