@@ -14,8 +14,8 @@ its tolerances, which `tolerance_cells` find, for an `assessment` over `interval
 `disk_response_words` and what `torsion_response` says, with arrays of `assessment_table`, `disk_response_table` and
 `response_peaks`, which `assessment_files` write, and `assessment_columns` as tables.
 
-The explorer: `studies`, `file_study`, `explore` and `cell` compute what it shows, `explorer` and `motion_explorer` draw
-it with a `map_figure`, a `cell_figure` and `widgets`, `live` serves it.
+The explorer: `studies`, `file_study`, `explore`, in `stages`, and `cell` compute what it shows, `explorer` and
+`motion_explorer` draw it with a `map_figure`, a `cell_figure` and `widgets`, `live` serves it.
 
 `export` writes points, meshes, tables. The command: `command`, after `command_line` has understood what is asked for,
 runs one of `commands`.

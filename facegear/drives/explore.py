@@ -6,7 +6,7 @@ screen; :mod:`facegear.drives.explorer` puts controls and figures on it.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,17 +14,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from facegear.drives.cell import UNSTABLE, CellDetail, cell_detail
+from facegear.drives.stages import Plan
 from facegear.drives.studies.study import Quantity, Settings, Study
 from facegear.floquet.models import Model, replace_parameter
 from facegear.maps.axes import periods_at
+from facegear.maps.rows import rows_of
 from facegear.maps.sweep import Sweep
 from facegear.maps.ways import Way
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
-
-# Cells of the first stage lie this many columns and rows apart, and slow maps are filled so many rows at a time: first
-# every second row, so that half the time gives the whole picture.
-_COLUMN_STEP, _ROW_STEP, _SLOW_ROWS = 3, 5, 10
 
 
 def map_stages(
@@ -44,89 +42,72 @@ def map_stages(
     Yields
     ------
     xarray.DataArray, shape (V, S)
-        Growth rates [1/s], with the period [s] of each speed as a coordinate. In the first, cells that are not yet
-        computed have the value of a neighbour; attribute ``computed`` is the part of the cells that are final.
+        Growth rates [1/s], with the period [s] of each speed as a coordinate, after each piece of a stage
+        (:mod:`facegear.drives.stages`). Cells that are not yet computed have the value of a neighbour. Attribute
+        ``computed`` is the part of the cells that are final; among them are those of every ``row_step``-th value at
+        every ``column_step``-th speed.
     """
-    way = _way(model, speeds, parameter, values)
-    name = way.sweep.path[-1]
-    columns = np.arange(min(_COLUMN_STEP // 2, speeds.size - 1), speeds.size, _COLUMN_STEP)
-    step = 1 if way.name == "loads" else _ROW_STEP
-    rows = np.arange(min(step // 2, values.size - 1), values.size, step)
-    growth = _growth(way.part(rows, columns))[_nearest(values.size, rows)]
-    growth, periods = growth[:, _nearest(speeds.size, columns)], periods_at(model, speeds)
-
-    def stage(computed: float) -> xr.DataArray:
-        return _labelled(name, values, speeds, growth.copy(), periods, computed)
-
-    yield stage(columns.size / speeds.size if way.name == "loads" else 0.0)
-    if way.name in ("loads", "columns"):
-        missing = np.setdiff1d(np.arange(speeds.size), columns if way.name == "loads" else [])
-        if missing.size:
-            growth[:, missing] = _growth(way.part(np.arange(values.size), missing))
-            yield stage(1.0)
-        return
-    final = 0
-    for part in _parts(values.size):
-        found = _growth(way.part(part, np.arange(speeds.size)))
-        if part[0] % 2 == 0:
-            # The row above each comes later, and is taken for its like until then.
-            above = np.minimum(part + 1, values.size - 1)
-            growth[above] = found
-        growth[part] = found
-        final += part.size
-        yield stage(final / values.size)
-
-
-def _parts(rows: int) -> list[NDArray[np.int64]]:
-    """Rows in the order in which a slow map is filled: every second one, then those between."""
-    found = []
-    for places in (np.arange(0, rows, 2), np.arange(1, rows, 2)):
-        found += [places[start : start + _SLOW_ROWS] for start in range(0, places.size, _SLOW_ROWS)]
-    return found
+    way, periods = _way(model, speeds, parameter, values), periods_at(model, speeds)
+    plan = Plan.of(model, speeds, way.name)
+    growth = np.full((values.size, speeds.size), np.nan)
+    for stage, steps in enumerate(plan.steps):
+        before = plan.steps[max(stage - 1, 0)]
+        pieces = list(plan.pieces(growth, stage))
+        for number, (rows, columns) in enumerate(pieces, 1):
+            for found in _growth_in_tasks(way.part(rows, columns)):
+                if found is not None:
+                    growth[np.ix_(rows, columns)] = found
+                complete = found is not None and number == len(pieces)
+                if stage > 0 or complete:
+                    shown, computed = plan.shown(growth, stage), float(np.isfinite(growth).mean())
+                    yield _labelled(way, shown, periods, computed, steps if complete else before)
 
 
 def reading_map(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> xr.DataArray:
     """Return the last stage of :func:`map_stages` without those before it."""
     way = _way(model, speeds, parameter, values)
-    return _labelled(way.sweep.path[-1], values, speeds, _growth(way), periods_at(model, speeds), 1.0)
+    *_, growth = _growth_in_tasks(way)
+    assert growth is not None
+    return _labelled(way, growth, periods_at(model, speeds), 1.0, (1, 1))
 
 
 def _labelled(
-    name: Hashable,
-    values: FloatArray,
-    speeds: FloatArray,
-    growth: FloatArray,
-    periods: FloatArray,
-    computed: float,
+    way: Way, growth: FloatArray, periods: FloatArray, computed: float, steps: tuple[int, int]
 ) -> xr.DataArray:
+    name = way.sweep.path[-1]
     return xr.DataArray(
         growth,
         dims=(name, "speed"),
-        coords={name: values, "speed": speeds, "period": ("speed", periods)},
+        coords={name: np.array(way.sweep.values), "speed": way.speeds, "period": ("speed", periods)},
         name="growth_rate",
-        attrs={"units": "1/s", "computed": computed},
+        attrs={"units": "1/s", "computed": computed, "row_step": steps[0], "column_step": steps[1]},
     )
 
 
 def _way(model: Model, speeds: FloatArray, parameter: str, values: FloatArray) -> Way:
-    return Way.of(Sweep(model, parameter, tuple(values.tolist()), None), speeds)
+    return Way.throughout(Sweep(model, parameter, tuple(values.tolist()), None), speeds)
 
 
-def _growth(way: Way) -> FloatArray:
-    """Growth rates [1/s], (V, S)."""
+def _growth_in_tasks(way: Way) -> Iterator[FloatArray | None]:
+    """Growth rates [1/s], (V, S), at last; nothing after each task before that."""
     # In this process: starting others would take longer than the map.
-    with one_thread():
-        if way.name == "rows":
-            radii, periods = way.rows().compute()
-        else:
-            radii, periods, _ = way.radii(
-                lambda tasks, *_: ((k, task.compute()) for k, task in enumerate(tasks))
-            )
-    return np.asarray(np.log(radii) / periods)
-
-
-def _nearest(size: int, chosen: NDArray[np.int64]) -> NDArray[np.int64]:
-    return np.asarray(np.abs(np.arange(size)[:, np.newaxis] - chosen).argmin(axis=1))
+    if way.name == "rows":
+        with one_thread():
+            radii, periods = rows_of(way.sweep.models, way.speeds, way.sweep.method)
+    else:
+        batches, results = way.batches(), dict[int, FloatArray]()
+        try:
+            tasks, *_ = next(batches)
+            while True:
+                for number, task in enumerate(tasks):
+                    with one_thread():
+                        results[number] = task.compute()
+                    yield None
+                tasks, *_ = batches.send(results)
+                results = {}
+        except StopIteration as end:
+            radii, periods, _ = end.value
+    yield np.asarray(np.log(radii) / periods)
 
 
 def unstable(chart: xr.DataArray) -> NDArray[np.bool_]:

@@ -39,6 +39,10 @@ from facegear.plotting.style import GROWTH, WIDTH, styled
 from facegear.support.types import FloatArray
 
 _REFUSALS = (TypeError, ValueError, ArithmeticError)
+# Seconds of computing after which it is heard what a reader has changed meanwhile, and after which a map that grows is
+# drawn anew: browsers take their time.
+_HEARD, _APART = 0.05, 0.2
+_ORDINALS = {1: "every", 2: "every second", 4: "every fourth", 8: "every eighth"}
 
 
 @styled
@@ -77,8 +81,9 @@ def picture(view: View) -> Figure:
 class MapExplorer:
     """Controls, a stability map and the detail of a cell, alive in JupyterLab and Voilà.
 
-    A control that changes draws the map anew, coarse at first; a click on the map, or the two sliders below it,
-    show multipliers, critical motion and tongue of a cell. What the study refuses is said beside the controls.
+    A control that changes draws the map anew, coarse at first and as it grows; a click on the map, or the two sliders
+    below it, show multipliers, critical motion and tongue of a cell. What the study refuses is said beside the
+    controls.
 
     Parameters
     ----------
@@ -277,13 +282,18 @@ class MapExplorer:
         self.message.value = refused(problem)
 
     def _refine(self, stages: Iterator[xr.DataArray], turn: int) -> Iterator[None]:
-        """Draw the stages of the map as they are there, then the cell, unless a control has changed meanwhile."""
-        started = time.perf_counter()
+        """Draw the map as it grows, then the cell, unless a control has changed meanwhile."""
+        started = drawn = heard = time.perf_counter()
         try:
             yield
-            while turn == self._turn and (stage := next(stages, None)) is not None:
-                self._draw(stage)
-                yield
+            while turn == self._turn and (chart := next(stages, None)) is not None:
+                now, whole = time.perf_counter(), chart.attrs["computed"] == 1.0
+                if whole or now > drawn + _APART:
+                    self._draw(chart)
+                    drawn = now
+                if now > heard + _HEARD:
+                    yield
+                    heard = time.perf_counter()
             if turn == self._turn:
                 self._show_cell()
                 rows, columns = self._chart.shape
@@ -302,7 +312,10 @@ class MapExplorer:
         with self.figure.batch_update():
             self.figure.layout.yaxis.title.text = self._quantity.label
             self.figure.data[0].update(heat(chart, self._quantity, self.study.speed, end))
-        self.status.value = small(f"refining, {chart.attrs['computed']:.0%} of the cells are final")
+        row, column = (_ORDINALS[chart.attrs[name]] for name in ("row_step", "column_step"))
+        self.status.value = small(
+            f"refining: {row} row at {column} speed and {chart.attrs['computed']:.0%} of all cells are final"
+        )
 
     def _cell(self) -> tuple[float, float]:
         """Speed and value of the chosen cell [SI]."""

@@ -31,6 +31,7 @@ from facegear.floquet.multipliers import multipliers
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.sheets import SHEET_TOLERANCE, is_interpolated, samples, windows
 from facegear.floquet.stepping import Family
+from facegear.maps.axes import periods_at
 from facegear.maps.parallel import parts_of
 from facegear.maps.sweep import Sweep, cell_by_cell
 from facegear.support.types import ComplexArray, FloatArray
@@ -140,13 +141,20 @@ def _column_radii(column: Column, method: Method | None, degree: int) -> FloatAr
 class Columns:
     """What all columns have in common.
 
-    Motions are those of the first, the middle and the last value; `turned` is the period times the speed of each value.
+    Motions are those of the first, the middle and the last value; `turned` is the period times the speed of each value,
+    or nothing where that is not the same at all speeds.
     """
 
     sweep: Sweep
     loads: LoadSweep | None
     motions: tuple[FrozenMotions, ...]
-    turned: FloatArray
+    turned: FloatArray | None
+
+    def periods(self, speeds: FloatArray) -> FloatArray:
+        """Periods T0 [s] at speeds (S,), shape (V, S)."""
+        if self.turned is None:
+            return np.stack([periods_at(model, speeds) for model in self.sweep.models])
+        return np.asarray(self.turned[:, np.newaxis] / speeds)
 
     def degree(self, speed: float) -> int:
         """Estimate of the degree that a series along the parameter will have."""
@@ -166,7 +174,7 @@ class Columns:
         Below it, where a period is long, a series along the parameter would take as many as there are values, as it
         does everywhere along a logarithmic axis.
         """
-        if self.loads is not None or self._is_smooth(float(speeds[0])):
+        if self.smooth_at(float(speeds[0])):
             return 0
         most = int(_MOST_OF_A_COLUMN * len(self.sweep.values))
         degrees = [self.degree(speed) for speed in speeds.tolist()]
@@ -179,10 +187,12 @@ class Columns:
         alone = planned[-1][0].start if planned else part.size
         row = alone + sum(degree + 1 for _, degree in planned)
         fewer = sum(degrees[start:]) + part.size < row * len(self.sweep.values)
-        return start if fewer and self._is_smooth(float(part[0])) else speeds.size
+        return start if fewer and self.smooth_at(float(part[0])) else speeds.size
 
-    def _is_smooth(self, speed: float) -> bool:
-        """Whether matrices may be interpolated along the parameter at a speed, and at all faster ones."""
+    def smooth_at(self, speed: float) -> bool:
+        """Whether columns take few matrices at a speed and at all faster ones, or are so cheap that they may."""
+        if self.loads is not None:
+            return True
         column = self.at(speed)
         return with_method(
             self.sweep.method,
@@ -285,8 +295,13 @@ def columns_of(sweep: Sweep, speeds: FloatArray) -> Columns | None:
         return None
     motions = tuple(FrozenMotions.of(model, 1.0 / fastest, 1.0 / slowest) for model in sweep.probed)
     # A fresh copy: models that have been built need not travel to other processes.
-    periods = np.array([system.period for system in first]) * slowest
-    return Columns(replace(sweep), swept, motions, periods)
+    turned = np.array([system.period for system in first]) * slowest
+    # Of three values it is seen whether all have their periods in inverse proportion to speed.
+    for speed in (float(speeds[speeds.size // 2]), fastest):
+        again = np.array([model.system(speed).period for model in sweep.probed]) * speed
+        if (np.abs(again - turned[list(sweep.probes)]) > 1e-12 * again).any():
+            return Columns(replace(sweep), swept, motions, None)
+    return Columns(replace(sweep), swept, motions, turned)
 
 
 def spectral_radius(system: PeriodicSystem, method: Method | None) -> float:

@@ -76,9 +76,14 @@ class Rows:
         speeds = np.array(self.speeds)
         # Models are built here, in the process that uses them: what they prepare may be most of the work.
         models = [replace_at(self.model, self.path, value) for value in self.values]
-        if speeds.size <= _FEW:
-            return _cell_by_cell(models, speeds, self.method)
-        return np.stack([_row(model, speeds, self.method) for model in models], axis=1)
+        return rows_of(models, speeds, self.method)
+
+
+def rows_of(models: Sequence[Model], speeds: FloatArray, method: Method | None) -> FloatArray:
+    """Largest moduli of the multipliers [-], and periods [s], of models at speeds (S,), shape (2, models, S)."""
+    if speeds.size <= _FEW:
+        return _cell_by_cell(models, speeds, method)
+    return np.stack([_row(model, speeds, method) for model in models], axis=1)
 
 
 def in_rows(

@@ -47,7 +47,7 @@ def test_last_stage_is_the_map_and_the_first_one_agrees_where_it_is_computed(par
     assert at_once.attrs == stages[-1].attrs
     assert at_once["period"].values == pytest.approx(2.0 * np.pi / FREQUENCIES)
     assert stages[-1].values == pytest.approx(expected.values, abs=1e-8)
-    assert stages[0].values[2::5, 1::3] == pytest.approx(expected.values[2::5, 1::3], abs=1e-8)
+    assert stages[0].values[4::8, 2::4] == pytest.approx(expected.values[4::8, 2::4], abs=1e-8)
     done = [stage.attrs["computed"] for stage in stages]
     assert done == sorted(done)
     assert done[0] < done[-1] == 1.0
@@ -58,7 +58,8 @@ def test_last_stage_is_the_map_and_the_first_one_agrees_where_it_is_computed(par
 def test_a_slow_map_has_every_second_row_when_half_of_it_is_final():
     model, values = cases.FIGURES["4.4a"].model(), np.linspace(0.02, 0.09, 17)
     stages = list(map_stages(model, rad_per_s(np.linspace(150.0, 900.0, 12)), "thickness_ratio", values))
-    (half,) = (stage for stage in stages if stage.attrs["computed"] == pytest.approx(9 / 17))
+    (half,) = (s for s in stages if (s.attrs["row_step"], s.attrs["column_step"]) == (2, 1))
+    assert half.attrs["computed"] == pytest.approx(9 / 17)
     expected = stages[-1].values
     assert half.values[::2] == pytest.approx(expected[::2], abs=1e-8)
     # Those between are their neighbours'.
@@ -93,6 +94,49 @@ def test_a_map_in_stages_is_the_map(parameter):
     np.testing.assert_allclose(
         reading_map(model, speeds, parameter, values).values, expected.values, atol=1e-7
     )
+
+
+@pytest.mark.parametrize(
+    ("vertical", "changes"),
+    [
+        ("thickness_ratio", {"pinions": "2"}),
+        ("stiffness", {"pinions": "2"}),
+        ("power", {"pinions": "2"}),
+        ("stiffness", {}),
+    ],
+)
+def test_what_a_stage_says_is_final_is_so(vertical, changes):
+    study = replace(drive_study(), rows=13, columns=9)
+    settings = study.settings(changes)
+    (speeds, values), parameter = study.axes(settings, vertical), study.swept(vertical).parameter
+    stages = list(map_stages(study.model(settings), speeds, parameter, values))
+    expected, steps = stages[-1].values, []
+    for stage in stages:
+        row_step, column_step = (stage.attrs[name] for name in ("row_step", "column_step"))
+        first, second = (
+            0 if step < widest else widest // 2 for step, widest in ((row_step, 8), (column_step, 4))
+        )
+        final = stage.values[first::row_step, second::column_step]
+        np.testing.assert_allclose(final, expected[first::row_step, second::column_step], atol=1e-7)
+        assert np.isclose(stage.values, expected, atol=1e-7).mean() >= stage.attrs["computed"]
+        steps.append(row_step * column_step)
+    assert steps == sorted(steps, reverse=True)
+    assert steps[-1] == 1
+
+
+def test_pieces_of_a_map_build_no_systems_for_their_periods(monkeypatch):
+    """Columns of a model that has to be built for each value: periods of all values took three systems each a piece."""
+    study = drive_study()
+    settings = study.settings({"pinions": "2"})
+    model, asked = study.model(settings), []
+    build = type(model).system
+    monkeypatch.setattr(type(model), "system", lambda self, speed: asked.append(speed) or build(self, speed))
+    (speeds, values), power = study.axes(settings, "power"), study.swept("power").parameter
+    *_, chart = map_stages(model, speeds, power, values)
+    assert chart.attrs["computed"] == 1.0
+    assert len(asked) < chart.size / 2
+    periods = 2.0 * np.pi / (settings["gear_teeth"] * speeds)
+    np.testing.assert_allclose(chart["period"], periods, rtol=1e-12)
 
 
 def test_view_is_of_the_cell_that_was_asked_for():

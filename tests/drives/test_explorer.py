@@ -207,6 +207,42 @@ def test_the_last_of_two_quick_changes_wins(widget):
     np.testing.assert_allclose(shown_map(widget), shown_map(alone), rtol=1e-8, atol=1e-8)
 
 
+def test_a_change_ends_a_map_that_is_being_filled(widget, monkeypatch):
+    """Piece by piece, and the status says how far it is."""
+    for seconds in ("_HEARD", "_APART"):
+        monkeypatch.setattr(explorer, seconds, 0.0)
+    taken = []
+
+    def noted(*given):
+        taken.append(0)
+        turn = len(taken) - 1
+        for chart in explore.map_stages(*given):
+            taken[turn] += 1
+            yield chart
+
+    monkeypatch.setattr(explorer, "map_stages", noted)
+
+    async def change():
+        widget.controls["damping_ratio"].value = 0.1
+        said = [text(widget.status)]
+        while taken[0] < 3:
+            await asyncio.sleep(0.001)
+        said.append(text(widget.status))
+        widget.controls["damping_ratio"].value = 0.05
+        while "refining" in text(widget.status):
+            await asyncio.sleep(0.001)
+        return said
+
+    coarse, finer = asyncio.run(change())
+    assert re.fullmatch(
+        r"refining: every eighth row at every fourth speed and \d+% of all cells are final", coarse
+    )
+    assert "every second row at every speed" in finer
+    assert taken[0] == 3
+    assert taken[1] > 3
+    assert "refined in" in text(widget.status)
+
+
 def words(figure):
     return " ".join(part.get_text() for part in figure.findobj(mpl.text.Text))
 

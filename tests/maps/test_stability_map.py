@@ -268,9 +268,9 @@ def test_a_parameter_too_fast_for_series_at_low_speeds_is_interpolated_at_high_o
     seen = {}
 
     def watched(name, whole):
-        def route(prepared, speeds, run):
+        def route(prepared, speeds):
             seen[name] = speeds.size
-            return whole(prepared, speeds, run)
+            return whole(prepared, speeds)
 
         return route
 
