@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import xarray as xr
@@ -26,6 +26,7 @@ from facegear.drives.growth_words import (
 from facegear.drives.intervals import Intervals, cut, gaps, inward, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.drives.torsion_response import in_words
 from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
@@ -64,6 +65,8 @@ class Assessment:
         Forced response of the disk in each model of the file's own contact, or why there is none.
     failed : tuple of str
         Models of the disk's motion that could not be computed, and why: what they come to is not known.
+    settled_torsion : dict of str to SettledTorsion
+        How many modes the shafts have where the tongues of `torsion` were found, and whether these suffice.
     """
 
     file: DriveFile
@@ -75,6 +78,7 @@ class Assessment:
     left_out: tuple[str, ...]
     disk_responses: tuple[DiskResponse, ...] = ()
     failed: tuple[str, ...] = ()
+    settled_torsion: dict[str, SettledTorsion] = field(default_factory=dict)
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -92,6 +96,7 @@ class Assessment:
         if (
             all(disk)
             and not any(self.torsion.values())
+            and not self._open_torsion
             and all(case.is_stable for case in self.worst.values())
         ):
             return SAFE
@@ -122,6 +127,8 @@ class Assessment:
         found += dict.fromkeys(turned + [SPEED_TURNS] * (nominal[TORSION] and bool(own)))
         if len({bool(self._operating(tongues)) for tongues in self.torsion.values()}) == 2:
             found.append("the contact or the arm of the mesh force in torsion")
+        if self._open_torsion:
+            found.append("more modes of a shaft in torsion")
         if self.failed:
             found.append("models that could not be computed")
         return tuple(found)
@@ -184,7 +191,18 @@ class Assessment:
         if open_cases:
             turned = "it" if open_cases == 1 else "them"
             words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn {turned}."
+        if self._open_torsion:
+            turned = "it" if self._open_torsion == 1 else "them"
+            words += (
+                f" NOT SETTLED in {self._open_torsion} of {len(self.torsion)} models of torsion: more modes of a shaft "
+                f"may turn {turned}."
+            )
         return words
+
+    @property
+    def _open_torsion(self) -> int:
+        """How many models of torsion have not settled."""
+        return sum(not found.settled for found in self.settled_torsion.values())
 
     @property
     def _of_failed(self) -> str:
