@@ -309,7 +309,9 @@ class Assessment:
     def table(self) -> xr.Dataset:
         """All models and what they come to, as arrays (:func:`facegear.drives.assessment_table.model_table`)."""
         wide = self.file.tolerances.widened(self.speeds)
-        return model_table(self.outcomes, self.torsion, self.speeds, wide, self._parameters)
+        return model_table(
+            self.outcomes, self.torsion, self.settled_torsion, self.speeds, wide, self._parameters
+        )
 
 
 def _intervals(found: Sequence[Tongue]) -> Intervals:

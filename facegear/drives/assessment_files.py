@@ -128,8 +128,9 @@ def _models(found: Assessment) -> Section:
     headings = (*names, *_FASTEST, _BASIS, "settled")
     words = Paragraph(
         "Settled: the unstable speeds of two bases agree; in a narrow range of three, also if borders beside it came "
-        "nearer by twice as much as they moved. In torsion: those with half the modes of the shafts. Growth rates are those of the basis that stands beside them; in "
-        "brackets, by how much of itself the largest differs in the basis before."
+        "nearer by twice as much as they moved. In torsion: those with half the modes of the shafts and with all. "
+        "Growth rates are those of the basis that stands beside them; in brackets, by how much of itself the largest "
+        "differs in the basis before."
     )
     table = Table(headings, _model_rows(found), "Models and what they come to")
     return Section("Models", (strips, words, table))
