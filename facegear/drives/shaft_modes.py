@@ -24,6 +24,8 @@ from facegear.support.types import FloatArray
 # With modes up to so many times the mesh frequency growth rates above 1 1/s were right to 4 %, of shafts of 1 to 3 m,
 # and borders to 0.2 % of themselves; with twice as many of them to 0.5 % and to 0.02 %.
 _REACH = 4
+# Half waves along a shaft at the mesh frequency below which one mode is enough: the next is 32 times as fast.
+_SHORT = 1.0 / 16.0
 # Most numbers of modes that are tried, the first of them half of what a gearbox has.
 _MOST_STEPS = 4
 # Part by which tongues are looked for beyond a range, to see what may come in.
@@ -48,7 +50,7 @@ def with_enough_modes(model: HeavyShafts, fastest: float) -> HeavyShafts:
     Returns
     -------
     HeavyShafts
-        Half of the modes reach up to four times the mesh frequency, and there is one at least.
+        Half of the modes reach up to four times the mesh frequency, and there is one at least; of short shafts one.
 
     Examples
     --------
@@ -66,10 +68,16 @@ def _asked(model: HeavyShafts, fastest: float) -> tuple[int, int]:
     # Half waves of a shaft at the mesh frequency.
     per_length = model.torsional.drive.gear_teeth * fastest / (math.pi * shear_wave_speed(model.material))
     first, second = (
-        2 * max(1, math.ceil(_REACH * per_length * length) - 1) if length else 0
+        _asked_by(per_length * length) if length else 0
         for length in (model.input_length, model.output_length)
     )
     return first, second
+
+
+def _asked_by(half_waves: float) -> int:
+    """Modes that a shaft needs, from the number of half waves along it at the mesh frequency."""
+    # Modes of short shafts are stiff, and what is left out behind the first of them is next to nothing.
+    return 1 if half_waves < _SHORT else 2 * max(1, math.ceil(_REACH * half_waves) - 1)
 
 
 def modes_of(torsional: Any) -> tuple[int, int]:
