@@ -7,7 +7,7 @@ the keys, `new_drive` asks for what a file needs; `examples` come with the packa
 
 What holds: `basis`, `shaft_modes`, `verdict`, `critical_thickness`, `report_rows`, `report_arrays`, `disk_response`,
 `play` of the teeth, `damage` of one; `findings` has all that a report shows, `sections` and `page` put it in words,
-`report_columns` and `report_files` write; `sweeps` are maps over any number of a file.
+`report_columns` and `report_files` write; `sweeps` are maps over any number of a file, `map_files` write them.
 
 A verdict for all that is open: `assess` asks all `variants` of a model, each an `outcome`, and for the `worst_case` in
 its tolerances, which `tolerance_cells` find, for an `assessment` over `intervals` of speed, in `growth_words`,

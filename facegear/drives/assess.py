@@ -218,13 +218,14 @@ class _Found:
                 (number, 0),
                 Outcome(replace(case, model=found.model), found.tongues, found.settled, found.growth_moved),
             )
-            # Where two bases agree for the file's teeth, the smaller is where the others begin, and that of tolerances.
-            last = found.steps[-2:][0]
+            # Where two bases agree for the file's teeth, the smaller is where the others begin.
+            last, enough = found.steps[-2:][0], found.sufficient
             start = with_basis(case.model, last.nodal_circles, last.nodal_diameters)
             words = f"unstable at {100 * found.unstable_share:.3g} % of the speeds"
             # Those of the file's own contact and teeth.
             if number < len(FORCES) and self.file.tolerances.given:
-                self._add_worst(crew, case.force, worst_case, start if found.settled else found.model)
+                model = with_basis(case.model, enough.nodal_circles, enough.nodal_diameters)
+                self._add_worst(crew, case.force, worst_case, model)
         variants, self.refused[number, 0], others = other_teeth(
             self.file, replace(case, model=start), self.contacts[case.contact]
         )

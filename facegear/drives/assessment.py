@@ -11,7 +11,7 @@ import xarray as xr
 from facegear.drives.assessment_table import model_table
 from facegear.drives.disk_response import DiskResponse
 from facegear.drives.disk_response_table import peaks_table, response_table
-from facegear.drives.disk_response_words import parting, sentences
+from facegear.drives.disk_response_words import parting, sentences, steadiness_known
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import (
@@ -95,8 +95,9 @@ class Assessment:
             return DEPENDS if any(torsion) else UNSTABLE
         if (
             all(disk)
+            and not self.open_models
             and not any(self.torsion.values())
-            and not self._open_torsion
+            and not self.open_torsion
             and all(case.is_stable for case in self.worst.values())
         ):
             return SAFE
@@ -127,11 +128,23 @@ class Assessment:
         found += dict.fromkeys(turned + [SPEED_TURNS] * (nominal[TORSION] and bool(own)))
         if len({bool(self._operating(tongues)) for tongues in self.torsion.values()}) == 2:
             found.append("the contact or the arm of the mesh force in torsion")
-        if self._open_torsion:
+        if self.open_torsion:
             found.append("more modes of a shaft in torsion")
         if self.failed:
             found.append("models that could not be computed")
+        if any(outcome.is_stable and not outcome.settled for outcome in self.outcomes):
+            found.append("bases that have not settled")
         return tuple(found)
+
+    @property
+    def open_models(self) -> int:
+        """Number of models of the disk's motion that have not settled: a larger basis may turn them."""
+        return sum(not outcome.settled for outcome in self.outcomes)
+
+    @property
+    def open_torsion(self) -> int:
+        """Number of models of torsion that have not settled: more modes of a shaft may turn them."""
+        return sum(not found.settled for found in self.settled_torsion.values())
 
     def _operating(self, found: Sequence[Tongue]) -> Intervals:
         """Where tongues stand in the operating range, without its tolerance."""
@@ -153,7 +166,10 @@ class Assessment:
 
     @cached_property
     def always_stable(self) -> Intervals:
-        """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable."""
+        """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable.
+
+        Known it is only if all models have settled (:attr:`open_models`, :attr:`open_torsion`).
+        """
         every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
         # Where it is not known, nothing is known to be stable.
         every += [interval for case in self.worst.values() for interval in case.possible]
@@ -165,44 +181,53 @@ class Assessment:
         """The verdict in a sentence or two, with what it was computed for."""
         low, high = (f"{rpm(speed):.4g}" for speed in self.speeds)
         count = len(self.outcomes)
-        stable = sum(outcome.is_stable for outcome in self.outcomes)
-        are = f"{stable} {'is' if stable == 1 else 'are'}"
+        safe = sum(outcome.is_stable for outcome in self.outcomes)
+        are = f"{safe} {'is' if safe == 1 else 'are'}"
         where = f"from {low} to {high} rpm, of {count} models of the disk's motion"
         if self.verdict == SAFE:
             words = f"Safe under all: {where} none is unstable at any speed."
-        elif self.verdict == UNSTABLE and stable:
+        elif self.verdict == UNSTABLE and safe:
             words = f"Unstable under all, because of torsion; {where} {are} stable at all speeds."
         elif self.verdict == UNSTABLE:
             words = f"Unstable under all: {where} each is unstable at some speeds."
         else:
             words = f"Depends on {listed(self.decides)}: {where} {are} stable at all speeds."
-        words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
-        values = ", and the file's own within its tolerances" if self.worst else ""
-        words += (
-            f" Speeds at which every model is known to be stable{values}: {told(inward(self.always_stable))}."
+        parting = self.parting or (
+            "Whether flanks stay in contact under the load of the drive is not known (Dynamic load)."
+            if self.verdict == SAFE and not steadiness_known(self.disk_responses)
+            else ""
         )
+        words += f" {parting}" * bool(parting) + self._of_failed + self._of_torsion
+        stable = told(inward(self.always_stable))
+        if self.open_models or self.open_torsion:
+            which = "no model, nor the file's own within its tolerances," if self.worst else "no model"
+            words += (
+                f"{self._not_settled} Speeds at which {which} was found unstable, which does not make them stable: "
+                f"{stable}."
+            )
+        else:
+            values = ", and the file's own within its tolerances" if self.worst else ""
+            words += f" Speeds at which every model is known to be stable{values}: {stable}."
         families = (
             "all models of the disk's motion, or all of torsion, are" if self.torsion else "all models are"
         )
         words += f" Speeds at which {families} unstable: {told(self.always_unstable)}."
         if self.verdict != SAFE:
             words += f" Worst: {self.mechanism}."
-        open_cases = sum(not outcome.settled for outcome in self.outcomes)
-        if open_cases:
-            turned = "it" if open_cases == 1 else "them"
-            words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn {turned}."
-        if self._open_torsion:
-            turned = "it" if self._open_torsion == 1 else "them"
-            words += (
-                f" NOT SETTLED in {self._open_torsion} of {len(self.torsion)} models of torsion: more modes of a shaft "
-                f"may turn {turned}."
-            )
         return words
 
     @property
-    def _open_torsion(self) -> int:
-        """How many models of torsion have not settled."""
-        return sum(not found.settled for found in self.settled_torsion.values())
+    def _not_settled(self) -> str:
+        """How many models have not settled, and what may turn them, as the headline has it; empty if all have."""
+        families = (
+            (self.open_models, len(self.outcomes), "models", "a larger basis"),
+            (self.open_torsion, len(self.torsion), "models of torsion", "more modes of a shaft"),
+        )
+        return "".join(
+            f" NOT SETTLED in {still} of {count} {what}: {more} may turn {'it' if still == 1 else 'them'}."
+            for still, count, what, more in families
+            if still
+        )
 
     @property
     def _of_failed(self) -> str:

@@ -50,7 +50,8 @@ _WORDS = (
     "same; length, each as its line is long, so that the mesh is as stiff as the lines are; length_share, each its "
     "part of the length of all, so that the mesh is as stiff at all times.",
     "(1+8)/1: natural motions 1 and 8, numbered by frequency, whose frequencies make up once the mesh frequency; "
-    "(8-1)/1: their difference does. mean 1: natural motion 1 grows by itself (flutter).",
+    "(8-1)/1: their difference does. mean 1: natural motion 1 grows by itself, oscillating (flutter); "
+    "mean 0: what grows by itself does not oscillate (divergence).",
     "10/1: natural motion 10 in resonance with the first harmonic of the mesh.",
 )
 
@@ -127,10 +128,10 @@ def _models(found: Assessment) -> Section:
     names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
     headings = (*names, *_FASTEST, _BASIS, "settled")
     words = Paragraph(
-        "Settled: the unstable speeds of two bases agree; in a narrow range of three, also if borders beside it came "
-        "nearer by twice as much as they moved. In torsion: those with half the modes of the shafts and with all. "
-        "Growth rates are those of the basis that stands beside them; in brackets, by how much of itself the largest "
-        "differs in the basis before."
+        "Settled: the unstable speeds of two bases agree, of which the larger has all modes of the disk up to the mesh "
+        "frequency; in a narrow range of three, also if borders beside it came nearer by twice as much as they moved. "
+        "In torsion: those with half the modes of the shafts and with all. Growth rates are those of the basis that "
+        "stands beside them; in brackets, by how much of itself the largest differs in the basis before."
     )
     table = Table(headings, _model_rows(found), "Models and what they come to")
     return Section("Models", (strips, words, table))

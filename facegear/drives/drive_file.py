@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from facegear.design.body import Requirements
-from facegear.drives.drive_keys import WIDEST_SPEED_RATIO
+from facegear.drives.drive_keys import NARROWEST_SPEED_RATIO, WIDEST_SPEED_RATIO
 from facegear.drives.file_gearbox import gearbox_models
 from facegear.drives.file_teeth import (
     check_angles,
@@ -280,6 +280,12 @@ def _requirements(found: FileValues, body: Body) -> Requirements:
         raise ValueError(
             f"operation.lowest_speed_rpm must be lower than operation.highest_speed_rpm = {rpm(high):.6g} rpm and at "
             f"least 1/{WIDEST_SPEED_RATIO:g} of it, got {rpm(low):.6g} rpm"
+        )
+    if not high >= NARROWEST_SPEED_RATIO * low * (1 - 1e-12):
+        least = NARROWEST_SPEED_RATIO * low
+        raise ValueError(
+            f"operation.highest_speed_rpm must be at least {NARROWEST_SPEED_RATIO:g} times operation.lowest_speed_rpm "
+            f"= {rpm(low):.9g} rpm, that is {rpm(least):.9g} rpm, got {rpm(high):.9g} rpm"
         )
     if high > limit:
         raise ValueError(

@@ -124,8 +124,9 @@ def unstable_speeds(found: Findings) -> Section:
     )
     names = Paragraph(
         "A name such as (1+8)/1 gives the natural frequencies of the mean system that combine, numbered from "
-        "the lowest, "
-        'and how many times the mesh frequency equals their combination; "mean 1" is flutter of the mean system.'
+        "the lowest, and how many times the mesh frequency equals their combination. mean 1: natural motion 1 of the "
+        "mean system grows by itself, oscillating (flutter); mean 0: what grows by itself does not oscillate "
+        "(divergence)."
     )
     rows: list[tuple[str, ...]] = []
     for name, part in found.tongue_tables.items():
@@ -152,8 +153,9 @@ def bases(found: Findings) -> Section:
     """Say how far the number of modes moves the borders."""
     words = Paragraph(
         "A force at one point calls on all modes of the body. The basis is raised, the bearing being kept as "
-        f"it is in N/m, until two in succession disagree in no more than {100 * found.tolerance:g} % of the "
-        f"speeds, and agree on whether there is a tongue at all; at most {found.most_steps} are tried."
+        "it is in N/m, until it has all modes up to the mesh frequency at the highest speed and two in succession, "
+        f"in a narrow range three, disagree in no more than {100 * found.tolerance:g} % of the speeds and agree on "
+        f"whether there is a tongue at all; at most {found.most_steps} are tried."
     )
     rows = []
     for name, *row in zip(*report_columns.basis_columns(found.bases).values(), strict=True):

@@ -1,5 +1,6 @@
 """An assessment: what follows from what its models come to, and that these are what they are called."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from facegear.drives.assess import _Found, _in_torsion, _Tried, assess
 from facegear.drives.assessment import Assessment
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.basis import with_basis
+from facegear.drives.disk_response import RIGID as RIGID_TEETH
+from facegear.drives.disk_response import DiskResponse
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.findings import TORSION, Findings
 from facegear.drives.growth_words import told
@@ -62,6 +65,15 @@ class TestVerdict:
             "Speeds at which every model is known to be stable: 100 to 1000 rpm. "
             "Speeds at which all models are unstable: no speed."
         )
+
+    def test_that_nobody_knows_whether_flanks_part_is_said_beside_safe(self):
+        safe = outcome("Tregold", DEAD, RIGID)
+        words = "Whether flanks stay in contact under the load of the drive is not known (Dynamic load)."
+        for reason, known in ((RIGID_TEETH, True), ("between two gears it is not computed", False)):
+            response = DiskResponse(safe.variant, 0.0, None, reason)
+            found = replace(assessment(safe), disk_responses=(response,))
+            assert found.verdict == "safe under all"
+            assert (words in found.headline) == (not known)
 
     def test_unstable_under_all_though_not_at_the_same_speeds(self):
         found = assessment(
@@ -118,6 +130,15 @@ class TestVerdict:
             "200, 290 to 1000 rpm.",
         )
         assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+
+    @pytest.mark.parametrize(("number", "kind"), [(1, "flutter"), (0, "divergence")])
+    def test_what_grows_by_itself_is_called_by_its_name(self, tmp_path, number, kind):
+        """A motion that does not oscillate was called a flutter, and its name explained nowhere."""
+        alone = replace(tongue(240, 260, 7.5), combination=Combination(number, number, "mean", 0))
+        found = assessment(outcome("Tregold", DEAD, RIGID, alone))
+        text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
+        assert f"Worst: {kind} of the mean system, mean {number} at 250 rpm" in text
+        assert re.search(rf"mean {number}: [^:]*\({kind}\)", text)
 
     def test_growth_at_a_value_in_the_tolerances_is_told(self, tmp_path):
         """A corner that grows faster than every model at the values of the file is the worst, with its factors."""
@@ -242,7 +263,14 @@ class TestVerdict:
 
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
-        assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn it.")
+        assert "NOT SETTLED in 1 of 1 models: a larger basis may turn it." in found.headline
+        # Nothing unstable was found, and that is not enough to be safe.
+        assert found.verdict == "depends"
+        assert found.decides == ("bases that have not settled",)
+        assert (
+            "no model was found unstable, which does not make them stable: 100 to 1000 rpm" in found.headline
+        )
+        assert "every model is known to be stable" not in found.headline
 
     def test_torsion_whose_shafts_lack_modes_makes_no_drive_safe(self):
         name, speeds = "Tregold, arm as printed", CASE_1.requirements.speeds
@@ -252,9 +280,10 @@ class TestVerdict:
         found = replace(stable, settled_torsion=shafts)
         assert (stable.verdict, found.verdict) == ("safe under all", "depends")
         assert found.decides == ("more modes of a shaft in torsion",)
-        assert found.headline.endswith(
-            "NOT SETTLED in 1 of 1 models of torsion: more modes of a shaft may turn it."
-        )
+        assert (
+            "NOT SETTLED in 1 of 1 models of torsion: more modes of a shaft may turn it. Speeds at which no model was "
+            "found unstable, which does not make them stable"
+        ) in found.headline
         assert "40 modes of the output shaft" in page("drive", sections(found))
         assert found.table()["settled"].values[-1] == 0.0
 
