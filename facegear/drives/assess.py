@@ -32,6 +32,7 @@ from facegear.drives.findings import TORSION, best_change
 from facegear.drives.outcome import Outcome
 from facegear.drives.refusals import told
 from facegear.drives.report_arrays import describe
+from facegear.drives.shaft_modes import settled_torsion
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import (
     Variant,
@@ -46,7 +47,7 @@ from facegear.floquet.modified_models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.crew import Crew
 from facegear.maps.response_map import frequency_response
-from facegear.maps.tracing import Tongue, tongues
+from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.parameters import number_of_workers, rpm
@@ -158,7 +159,7 @@ class _Found:
         for number, case in enumerate(self.cases[2:], 2):
             self._add_case(crew, number, case)
         for name, work in self.torsion.items():
-            crew.add(("torsion", name), 0.0, tongues, *work)
+            crew.add(("torsion", name), 0.0, settled_torsion, *work, self.tolerance)
         if (torsional := self.file.torsional) is not None:
             crew.add(("response", ""), 0.0, _response, self.file, torsional)
             if self.file.tolerances.given_in_torsion:
@@ -291,12 +292,13 @@ class _Found:
         if change is None:
             unstable = next((outcome for outcome in outcomes if outcome.tongues), None)
             change = "" if unstable is None else _change(self.file, unstable, self.judged)
-        if change and any(self.found["torsion", name] for name in self.torsion):
+        torsion = {name: self.found["torsion", name] for name in self.torsion}
+        if change and any(found.tongues for found in torsion.values()):
             change += " In torsion no change was tried."
         return Assessment(
             file=self.file,
             outcomes=outcomes,
-            torsion={name: self.found["torsion", name] for name in self.torsion},
+            torsion={name: found.tongues for name, found in torsion.items()},
             worst={
                 name: self.found["worst", name]
                 for name in (*FORCES.values(), TORSION)
@@ -306,6 +308,7 @@ class _Found:
             change=change,
             left_out=tuple(dict.fromkeys(refused)),
             failed=tuple(failed),
+            settled_torsion=torsion,
             disk_responses=tuple(
                 self.found["disk", which] for which in order if ("disk", which) in self.found
             ),

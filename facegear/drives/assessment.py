@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import xarray as xr
@@ -26,6 +26,7 @@ from facegear.drives.growth_words import (
 from facegear.drives.intervals import Intervals, cut, gaps, inward, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.drives.torsion_response import in_words
 from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
@@ -64,6 +65,8 @@ class Assessment:
         Forced response of the disk in each model of the file's own contact, or why there is none.
     failed : tuple of str
         Models of the disk's motion that could not be computed, and why: what they come to is not known.
+    settled_torsion : dict of str to SettledTorsion
+        How many modes the shafts have where the tongues of `torsion` were found, and whether these suffice.
     """
 
     file: DriveFile
@@ -75,6 +78,7 @@ class Assessment:
     left_out: tuple[str, ...]
     disk_responses: tuple[DiskResponse, ...] = ()
     failed: tuple[str, ...] = ()
+    settled_torsion: dict[str, SettledTorsion] = field(default_factory=dict)
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -93,6 +97,7 @@ class Assessment:
             all(disk)
             and not self.open_models
             and not any(self.torsion.values())
+            and not self.open_torsion
             and all(case.is_stable for case in self.worst.values())
         ):
             return SAFE
@@ -123,6 +128,8 @@ class Assessment:
         found += dict.fromkeys(turned + [SPEED_TURNS] * (nominal[TORSION] and bool(own)))
         if len({bool(self._operating(tongues)) for tongues in self.torsion.values()}) == 2:
             found.append("the contact or the arm of the mesh force in torsion")
+        if self.open_torsion:
+            found.append("more modes of a shaft in torsion")
         if self.failed:
             found.append("models that could not be computed")
         if any(outcome.is_stable and not outcome.settled for outcome in self.outcomes):
@@ -133,6 +140,11 @@ class Assessment:
     def open_models(self) -> int:
         """Number of models of the disk's motion that have not settled: a larger basis may turn them."""
         return sum(not outcome.settled for outcome in self.outcomes)
+
+    @property
+    def open_torsion(self) -> int:
+        """Number of models of torsion that have not settled: more modes of a shaft may turn them."""
+        return sum(not found.settled for found in self.settled_torsion.values())
 
     def _operating(self, found: Sequence[Tongue]) -> Intervals:
         """Where tongues stand in the operating range, without its tolerance."""
@@ -156,7 +168,7 @@ class Assessment:
     def always_stable(self) -> Intervals:
         """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable.
 
-        Known it is only if all models have settled (:attr:`open_models`).
+        Known it is only if all models have settled (:attr:`open_models`, :attr:`open_torsion`).
         """
         every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
         # Where it is not known, nothing is known to be stable.
@@ -187,12 +199,11 @@ class Assessment:
         )
         words += f" {parting}" * bool(parting) + self._of_failed + self._of_torsion
         stable = told(inward(self.always_stable))
-        if self.open_models:
-            turned = "it" if self.open_models == 1 else "them"
+        if self.open_models or self.open_torsion:
             which = "no model, nor the file's own within its tolerances," if self.worst else "no model"
             words += (
-                f" NOT SETTLED in {self.open_models} of {count} models: a larger basis may turn {turned}. Speeds at "
-                f"which {which} was found unstable, which does not make them stable: {stable}."
+                f"{self._not_settled} Speeds at which {which} was found unstable, which does not make them stable: "
+                f"{stable}."
             )
         else:
             values = ", and the file's own within its tolerances" if self.worst else ""
@@ -204,6 +215,19 @@ class Assessment:
         if self.verdict != SAFE:
             words += f" Worst: {self.mechanism}."
         return words
+
+    @property
+    def _not_settled(self) -> str:
+        """How many models have not settled, and what may turn them, as the headline has it; empty if all have."""
+        families = (
+            (self.open_models, len(self.outcomes), "models", "a larger basis"),
+            (self.open_torsion, len(self.torsion), "models of torsion", "more modes of a shaft"),
+        )
+        return "".join(
+            f" NOT SETTLED in {still} of {count} {what}: {more} may turn {'it' if still == 1 else 'them'}."
+            for still, count, what, more in families
+            if still
+        )
 
     @property
     def _of_failed(self) -> str:
@@ -310,7 +334,9 @@ class Assessment:
     def table(self) -> xr.Dataset:
         """All models and what they come to, as arrays (:func:`facegear.drives.assessment_table.model_table`)."""
         wide = self.file.tolerances.widened(self.speeds)
-        return model_table(self.outcomes, self.torsion, self.speeds, wide, self._parameters)
+        return model_table(
+            self.outcomes, self.torsion, self.settled_torsion, self.speeds, wide, self._parameters
+        )
 
 
 def _intervals(found: Sequence[Tongue]) -> Intervals:

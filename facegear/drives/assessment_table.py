@@ -12,6 +12,7 @@ import xarray as xr
 from facegear.drives.basis import unstable_share
 from facegear.drives.findings import TORSION
 from facegear.drives.outcome import Outcome
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.maps.tracing import Tongue
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rpm
@@ -47,9 +48,17 @@ def _row(outcome: Outcome, speeds: tuple[float, float]) -> _Row:
     return _Row(*names, outcome.tongues, speeds, float(outcome.settled), *basis, outcome.growth_moved)
 
 
+def _whether_settled(found: SettledTorsion | None) -> tuple[float, float, float, float]:
+    """Whether modes of shafts suffice, no disk, and by how much growth has moved; NaN where there are no modes."""
+    if found is None or not found.modes:
+        return (math.nan,) * 4
+    return float(found.settled), math.nan, math.nan, found.growth_moved
+
+
 def model_table(
     outcomes: Sequence[Outcome],
     torsion: Mapping[str, Sequence[Tongue]],
+    shafts: Mapping[str, SettledTorsion],
     speeds: tuple[float, float],
     wide: tuple[float, float],
     parameters: str,
@@ -62,6 +71,8 @@ def model_table(
         Of the disk's motion.
     torsion : mapping of str to sequence of Tongue
         By contact and arm.
+    shafts : mapping of str to SettledTorsion
+        By the same names, whether the modes of shafts suffice.
     speeds, wide : tuple of float
         Range looked at for the disk, and in torsion [rad/s].
     parameters : str
@@ -72,11 +83,14 @@ def model_table(
     xarray.Dataset
         Over ``model``, the disk's first: ``unstable_share`` [-], ``largest_growth`` [1/s], at ``fastest_speed``
         [rad/s], ``tongues``; ``settled``, the basis, ``nodal_circles`` and ``nodal_diameters``, and ``growth_moved``,
-        the part by which the growth differs in the basis before [-], NaN in torsion; motion, contact, force and teeth,
-        label of what grows fastest and unstable speeds in rpm as coordinates of text.
+        the part by which the growth differs in the basis before [-], NaN in torsion with massless shafts; motion,
+        contact, force and teeth, label of what grows fastest and unstable speeds in rpm as coordinates of text.
     """
     rows = [_row(outcome, speeds) for outcome in outcomes]
-    rows += [_Row(TORSION, name, "", "", found, wide) for name, found in torsion.items()]
+    rows += [
+        _Row(TORSION, name, "", "", found, wide, *_whether_settled(shafts.get(name)))
+        for name, found in torsion.items()
+    ]
     fastest = [row.fastest for row in rows]
     unstable = [
         "; ".join(f"{rpm(tongue.lower):.6g} to {rpm(tongue.upper):.6g}" for tongue in row.tongues)

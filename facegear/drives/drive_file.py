@@ -231,17 +231,19 @@ def _drive_file(found: FileValues) -> DriveFile:
         transverse = gear if roles is None else built(found, "second_gear", lambda: TwoGears(gear, roles))
     built(found, "material", lambda: built(found, "body", lambda: transverse.gear.bearing_stiffness))
     requirements = _requirements(found, body)
-    torsional, play, cracked = gearbox_models(
-        found, drive, contact, material, requirements.pinion_torque * drive.gear_ratio
+    tolerances = Tolerances(**values["tolerances"])
+    built(found, "tolerances", lambda: tolerances.require_shafts(values["gearbox"] is not None))
+    torque, fastest = (
+        requirements.pinion_torque * drive.gear_ratio,
+        tolerances.widened(requirements.speeds)[1],
     )
+    torsional, play, cracked = gearbox_models(found, drive, contact, material, torque, fastest)
     force_at = values["operation"]["force_at"]
     built(
         found,
         "operation",
         lambda: [pressed(force_at, each, drive).points(drive) for each in contacts.values()],
     )
-    tolerances = Tolerances(**values["tolerances"])
-    built(found, "tolerances", lambda: tolerances.require_shafts(values["gearbox"] is not None))
     return DriveFile(
         name=found.name,
         transverse=transverse,

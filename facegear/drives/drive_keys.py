@@ -193,7 +193,7 @@ def _inertia(name: str, meaning: str) -> Key:
 
 
 def _length_of_shaft(name: str, meaning: str) -> Key:
-    meaning = f"{meaning}, of the material of the body; 0 for a massless one"
+    meaning = f"{meaning}, of the material of the body; 0 for a massless one. It has as many modes as the mesh asks for"
     return Key(name, meaning, "number", "mm", 1.0, 2e4, or_zero=True, default=0.0)
 
 

@@ -22,6 +22,7 @@ from facegear.drives.intervals import gaps
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import page
 from facegear.drives.sections import torsion as torsion_section
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
@@ -29,6 +30,7 @@ from facegear.drives.worst_case import WorstCase, not_known
 from facegear.floquet.labels import Combination
 from facegear.floquet.response import steady_response
 from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.support.parameters import rad_per_s, rpm
 from tests.drives.test_page import HOSTILE, Reader
 
@@ -269,6 +271,21 @@ class TestVerdict:
             "no model was found unstable, which does not make them stable: 100 to 1000 rpm" in found.headline
         )
         assert "every model is known to be stable" not in found.headline
+
+    def test_torsion_whose_shafts_lack_modes_makes_no_drive_safe(self):
+        name, speeds = "Tregold, arm as printed", CASE_1.requirements.speeds
+        box = read_drive_file(DRIVES / "gearbox_table_7_1.yaml").torsional
+        shafts = {name: SettledTorsion(HeavyShafts(box, 0.0, 3.0, modes=40), speeds, (), settled=False)}
+        stable = assessment(outcome("Tregold", DEAD, RIGID), torsion={name: ()})
+        found = replace(stable, settled_torsion=shafts)
+        assert (stable.verdict, found.verdict) == ("safe under all", "depends")
+        assert found.decides == ("more modes of a shaft in torsion",)
+        assert (
+            "NOT SETTLED in 1 of 1 models of torsion: more modes of a shaft may turn it. Speeds at which no model was "
+            "found unstable, which does not make them stable"
+        ) in found.headline
+        assert "40 modes of the output shaft" in page("drive", sections(found))
+        assert found.table()["settled"].values[-1] == 0.0
 
 
 def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all():

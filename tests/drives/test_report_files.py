@@ -116,7 +116,7 @@ def test_torsion_that_fails_leaves_the_disk(tmp_path, monkeypatch):
     def fails(*_, **__):
         raise ArithmeticError("multipliers are not known")
 
-    monkeypatch.setattr(findings, "tongues", fails)
+    monkeypatch.setattr(findings, "settled_torsion", fails)
     found = Findings(file, cells=3, most_steps=1, jobs=1)
     assert "torsion" not in found.tongues
     for title, make, told in (
