@@ -112,8 +112,10 @@ def assess(
     >>> text = text.replace("_speed_rpm: 100", "_speed_rpm: 540")
     >>> small = "body:\n  nodal_circles: 0\n  nodal_diameters: 1\n"
     >>> found = fg.assess(parse_drive(text.replace("body:\n", small)), most_steps=1, jobs=1)
-    >>> found.verdict, found.decides
+    >>> found.verdict, found.decides[:3]
     ('depends', ('the contact', 'the direction of the driving force', 'the teeth'))
+    >>> found.decides[3:]
+    ('bases that have not settled',)
     """
     number_of_workers("jobs", jobs)
     found = _Found(file, tolerance, most_steps, tell or (lambda words: None))
