@@ -5,9 +5,9 @@ one by one, `file_teeth` and `file_gearbox` build what they say of `contacts`, `
 `refusals` tells in the file's words what models refuse. `drive_text` writes, `drive_schema` tells editors and readers
 the keys, `new_drive` asks for what a file needs; `examples` come with the package.
 
-What holds: `basis`, `verdict`, `critical_thickness`, `report_rows`, `report_arrays`, `disk_response`, `play` of the
-teeth, `damage` of one; `findings` has all that a report shows, `sections` and `page` put it in words, `report_columns`
-and `report_files` write; `sweeps` are maps over any number of a file.
+What holds: `basis`, `shaft_modes`, `verdict`, `critical_thickness`, `report_rows`, `report_arrays`, `disk_response`,
+`play` of the teeth, `damage` of one; `findings` has all that a report shows, `sections` and `page` put it in words,
+`report_columns` and `report_files` write; `sweeps` are maps over any number of a file, `map_files` write them.
 
 A verdict for all that is open: `assess` asks all `variants` of a model, each an `outcome`, and for the `worst_case` in
 its tolerances, which `tolerance_cells` find, for an `assessment` over `intervals` of speed, in `growth_words`,

@@ -32,6 +32,7 @@ from facegear.drives.findings import TORSION, best_change
 from facegear.drives.outcome import Outcome
 from facegear.drives.refusals import told
 from facegear.drives.report_arrays import describe
+from facegear.drives.shaft_modes import settled_torsion
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import (
     Variant,
@@ -46,7 +47,7 @@ from facegear.floquet.modified_models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.crew import Crew
 from facegear.maps.response_map import frequency_response
-from facegear.maps.tracing import Tongue, tongues
+from facegear.maps.tracing import Tongue
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.parameters import number_of_workers, rpm
@@ -57,8 +58,11 @@ _ARMS = {"printed": "arm as printed", "conjugate": "arm of conjugate teeth"}
 _MORE_BASES = 3
 # Speeds of the response in torsion.
 _TORSION_SPEEDS = 91
-# Urgency of cases, which other models wait for, above that of any size of a model.
+# Urgency of cases, which other models wait for, above that of any size of a model; then comes what takes longest, so
+# that no process is idle at the end: a search in tolerances takes about five times as long as tongues in two or three
+# bases, and a forced response half as long.
 _CASES_FIRST = 1e6
+_SEARCH, _RESPONSE = 5.0, 0.5
 
 
 def assess(
@@ -108,8 +112,10 @@ def assess(
     >>> text = text.replace("_speed_rpm: 100", "_speed_rpm: 540")
     >>> small = "body:\n  nodal_circles: 0\n  nodal_diameters: 1\n"
     >>> found = fg.assess(parse_drive(text.replace("body:\n", small)), most_steps=1, jobs=1)
-    >>> found.verdict, found.decides
+    >>> found.verdict, found.decides[:3]
     ('depends', ('the contact', 'the direction of the driving force', 'the teeth'))
+    >>> found.decides[3:]
+    ('bases that have not settled',)
     """
     number_of_workers("jobs", jobs)
     found = _Found(file, tolerance, most_steps, tell or (lambda words: None))
@@ -155,7 +161,7 @@ class _Found:
         for number, case in enumerate(self.cases[2:], 2):
             self._add_case(crew, number, case)
         for name, work in self.torsion.items():
-            crew.add(("torsion", name), 0.0, tongues, *work)
+            crew.add(("torsion", name), 0.0, settled_torsion, *work, self.tolerance)
         if (torsional := self.file.torsional) is not None:
             crew.add(("response", ""), 0.0, _response, self.file, torsional)
             if self.file.tolerances.given_in_torsion:
@@ -176,7 +182,7 @@ class _Found:
 
     def _add_worst(self, crew: Crew, name: str, find: Callable[..., WorstCase], model: Any) -> None:
         size = float(len(model.coordinates))
-        crew.add(("worst", name), size, _at_worst, find, model, self.speeds, self.file.tolerances)
+        crew.add(("worst", name), _SEARCH * size, _at_worst, find, model, self.speeds, self.file.tolerances)
 
     def at_work(self, names: Sequence[tuple[str, Any]]) -> None:
         """Say what is being computed."""
@@ -214,13 +220,14 @@ class _Found:
                 (number, 0),
                 Outcome(replace(case, model=found.model), found.tongues, found.settled, found.growth_moved),
             )
-            # Where two bases agree for the file's teeth, the smaller is where the others begin, and that of tolerances.
-            last = found.steps[-2:][0]
+            # Where two bases agree for the file's teeth, the smaller is where the others begin.
+            last, enough = found.steps[-2:][0], found.sufficient
             start = with_basis(case.model, last.nodal_circles, last.nodal_diameters)
             words = f"unstable at {100 * found.unstable_share:.3g} % of the speeds"
             # Those of the file's own contact and teeth.
             if number < len(FORCES) and self.file.tolerances.given:
-                self._add_worst(crew, case.force, worst_case, start if found.settled else found.model)
+                model = with_basis(case.model, enough.nodal_circles, enough.nodal_diameters)
+                self._add_worst(crew, case.force, worst_case, model)
         variants, self.refused[number, 0], others = other_teeth(
             self.file, replace(case, model=start), self.contacts[case.contact]
         )
@@ -251,7 +258,8 @@ class _Found:
         self.outcomes[which] = outcome
         if outcome.variant.contact == self.cases[0].contact:
             force = self.file.requirements.pinion_torque / self.file.drive.base_radius
-            crew.add(("disk", which), 1.0, disk_response, outcome, force, self._charted)
+            size = float(len(outcome.variant.model.coordinates))
+            crew.add(("disk", which), _RESPONSE * size, disk_response, outcome, force, self._charted)
 
     @property
     def _charted(self) -> FloatArray:
@@ -286,12 +294,13 @@ class _Found:
         if change is None:
             unstable = next((outcome for outcome in outcomes if outcome.tongues), None)
             change = "" if unstable is None else _change(self.file, unstable, self.judged)
-        if change and any(self.found["torsion", name] for name in self.torsion):
+        torsion = {name: self.found["torsion", name] for name in self.torsion}
+        if change and any(found.tongues for found in torsion.values()):
             change += " In torsion no change was tried."
         return Assessment(
             file=self.file,
             outcomes=outcomes,
-            torsion={name: self.found["torsion", name] for name in self.torsion},
+            torsion={name: found.tongues for name, found in torsion.items()},
             worst={
                 name: self.found["worst", name]
                 for name in (*FORCES.values(), TORSION)
@@ -301,6 +310,7 @@ class _Found:
             change=change,
             left_out=tuple(dict.fromkeys(refused)),
             failed=tuple(failed),
+            settled_torsion=torsion,
             disk_responses=tuple(
                 self.found["disk", which] for which in order if ("disk", which) in self.found
             ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import xarray as xr
@@ -11,7 +11,7 @@ import xarray as xr
 from facegear.drives.assessment_table import model_table
 from facegear.drives.disk_response import DiskResponse
 from facegear.drives.disk_response_table import peaks_table, response_table
-from facegear.drives.disk_response_words import parting, sentences
+from facegear.drives.disk_response_words import parting, sentences, steadiness_known
 from facegear.drives.drive_file import DriveFile
 from facegear.drives.findings import TORSION
 from facegear.drives.growth_words import (
@@ -26,6 +26,7 @@ from facegear.drives.growth_words import (
 from facegear.drives.intervals import Intervals, cut, gaps, inward, united
 from facegear.drives.outcome import Outcome
 from facegear.drives.report_arrays import describe
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.drives.torsion_response import in_words
 from facegear.drives.worst_case import WorstCase
 from facegear.maps.tracing import Tongue
@@ -64,6 +65,8 @@ class Assessment:
         Forced response of the disk in each model of the file's own contact, or why there is none.
     failed : tuple of str
         Models of the disk's motion that could not be computed, and why: what they come to is not known.
+    settled_torsion : dict of str to SettledTorsion
+        How many modes the shafts have where the tongues of `torsion` were found, and whether these suffice.
     """
 
     file: DriveFile
@@ -75,6 +78,7 @@ class Assessment:
     left_out: tuple[str, ...]
     disk_responses: tuple[DiskResponse, ...] = ()
     failed: tuple[str, ...] = ()
+    settled_torsion: dict[str, SettledTorsion] = field(default_factory=dict)
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -91,7 +95,9 @@ class Assessment:
             return DEPENDS if any(torsion) else UNSTABLE
         if (
             all(disk)
+            and not self.open_models
             and not any(self.torsion.values())
+            and not self.open_torsion
             and all(case.is_stable for case in self.worst.values())
         ):
             return SAFE
@@ -122,9 +128,23 @@ class Assessment:
         found += dict.fromkeys(turned + [SPEED_TURNS] * (nominal[TORSION] and bool(own)))
         if len({bool(self._operating(tongues)) for tongues in self.torsion.values()}) == 2:
             found.append("the contact or the arm of the mesh force in torsion")
+        if self.open_torsion:
+            found.append("more modes of a shaft in torsion")
         if self.failed:
             found.append("models that could not be computed")
+        if any(outcome.is_stable and not outcome.settled for outcome in self.outcomes):
+            found.append("bases that have not settled")
         return tuple(found)
+
+    @property
+    def open_models(self) -> int:
+        """Number of models of the disk's motion that have not settled: a larger basis may turn them."""
+        return sum(not outcome.settled for outcome in self.outcomes)
+
+    @property
+    def open_torsion(self) -> int:
+        """Number of models of torsion that have not settled: more modes of a shaft may turn them."""
+        return sum(not found.settled for found in self.settled_torsion.values())
 
     def _operating(self, found: Sequence[Tongue]) -> Intervals:
         """Where tongues stand in the operating range, without its tolerance."""
@@ -146,7 +166,10 @@ class Assessment:
 
     @cached_property
     def always_stable(self) -> Intervals:
-        """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable."""
+        """Intervals of speed [rad/s] in which every model, torsion and every value looked at is stable.
+
+        Known it is only if all models have settled (:attr:`open_models`, :attr:`open_torsion`).
+        """
         every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
         # Where it is not known, nothing is known to be stable.
         every += [interval for case in self.worst.values() for interval in case.possible]
@@ -158,33 +181,53 @@ class Assessment:
         """The verdict in a sentence or two, with what it was computed for."""
         low, high = (f"{rpm(speed):.4g}" for speed in self.speeds)
         count = len(self.outcomes)
-        stable = sum(outcome.is_stable for outcome in self.outcomes)
-        are = f"{stable} {'is' if stable == 1 else 'are'}"
+        safe = sum(outcome.is_stable for outcome in self.outcomes)
+        are = f"{safe} {'is' if safe == 1 else 'are'}"
         where = f"from {low} to {high} rpm, of {count} models of the disk's motion"
         if self.verdict == SAFE:
             words = f"Safe under all: {where} none is unstable at any speed."
-        elif self.verdict == UNSTABLE and stable:
+        elif self.verdict == UNSTABLE and safe:
             words = f"Unstable under all, because of torsion; {where} {are} stable at all speeds."
         elif self.verdict == UNSTABLE:
             words = f"Unstable under all: {where} each is unstable at some speeds."
         else:
             words = f"Depends on {listed(self.decides)}: {where} {are} stable at all speeds."
-        words += f" {self.parting}" * bool(self.parting) + self._of_failed + self._of_torsion
-        values = ", and the file's own within its tolerances" if self.worst else ""
-        words += (
-            f" Speeds at which every model is known to be stable{values}: {told(inward(self.always_stable))}."
+        parting = self.parting or (
+            "Whether flanks stay in contact under the load of the drive is not known (Dynamic load)."
+            if self.verdict == SAFE and not steadiness_known(self.disk_responses)
+            else ""
         )
+        words += f" {parting}" * bool(parting) + self._of_failed + self._of_torsion
+        stable = told(inward(self.always_stable))
+        if self.open_models or self.open_torsion:
+            which = "no model, nor the file's own within its tolerances," if self.worst else "no model"
+            words += (
+                f"{self._not_settled} Speeds at which {which} was found unstable, which does not make them stable: "
+                f"{stable}."
+            )
+        else:
+            values = ", and the file's own within its tolerances" if self.worst else ""
+            words += f" Speeds at which every model is known to be stable{values}: {stable}."
         families = (
             "all models of the disk's motion, or all of torsion, are" if self.torsion else "all models are"
         )
         words += f" Speeds at which {families} unstable: {told(self.always_unstable)}."
         if self.verdict != SAFE:
             words += f" Worst: {self.mechanism}."
-        open_cases = sum(not outcome.settled for outcome in self.outcomes)
-        if open_cases:
-            turned = "it" if open_cases == 1 else "them"
-            words += f" NOT SETTLED in {open_cases} of {count} models: a larger basis may turn {turned}."
         return words
+
+    @property
+    def _not_settled(self) -> str:
+        """How many models have not settled, and what may turn them, as the headline has it; empty if all have."""
+        families = (
+            (self.open_models, len(self.outcomes), "models", "a larger basis"),
+            (self.open_torsion, len(self.torsion), "models of torsion", "more modes of a shaft"),
+        )
+        return "".join(
+            f" NOT SETTLED in {still} of {count} {what}: {more} may turn {'it' if still == 1 else 'them'}."
+            for still, count, what, more in families
+            if still
+        )
 
     @property
     def _of_failed(self) -> str:
@@ -224,7 +267,9 @@ class Assessment:
             )
         # The first of equal ones, a model before a corner that is the same.
         name, strongest = max(unstable, key=lambda pair: pair[1].growth_rate)
-        return f"{mechanism(strongest)} ({name})"
+        low, high = self.speeds
+        where = "" if low <= strongest.peak <= high else ", outside the range, in the tolerance of speed"
+        return f"{mechanism(strongest)} ({name}{where})"
 
     @property
     def over_tolerances(self) -> tuple[str, ...]:
@@ -289,7 +334,9 @@ class Assessment:
     def table(self) -> xr.Dataset:
         """All models and what they come to, as arrays (:func:`facegear.drives.assessment_table.model_table`)."""
         wide = self.file.tolerances.widened(self.speeds)
-        return model_table(self.outcomes, self.torsion, self.speeds, wide, self._parameters)
+        return model_table(
+            self.outcomes, self.torsion, self.settled_torsion, self.speeds, wide, self._parameters
+        )
 
 
 def _intervals(found: Sequence[Tongue]) -> Intervals:

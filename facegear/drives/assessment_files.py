@@ -21,6 +21,7 @@ from facegear.drives.outcome import Outcome
 from facegear.drives.page import Listing, Paragraph, Picture, Section, Table, page
 from facegear.drives.report_arrays import describe
 from facegear.drives.report_files import foreign
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.drives.tolerance_cells import FINE, HALF, MOST, Factors
 from facegear.drives.torsion_response import peaks_table, response_table
 from facegear.drives.variants import Variant
@@ -49,7 +50,8 @@ _WORDS = (
     "same; length, each as its line is long, so that the mesh is as stiff as the lines are; length_share, each its "
     "part of the length of all, so that the mesh is as stiff at all times.",
     "(1+8)/1: natural motions 1 and 8, numbered by frequency, whose frequencies make up once the mesh frequency; "
-    "(8-1)/1: their difference does. mean 1: natural motion 1 grows by itself (flutter).",
+    "(8-1)/1: their difference does. mean 1: natural motion 1 grows by itself, oscillating (flutter); "
+    "mean 0: what grows by itself does not oscillate (divergence).",
     "10/1: natural motion 10 in resonance with the first harmonic of the mesh.",
 )
 
@@ -126,9 +128,10 @@ def _models(found: Assessment) -> Section:
     names = ("motion", "contact", "driving force", "teeth", "unstable [% of speeds]", "unstable [rpm]")
     headings = (*names, *_FASTEST, _BASIS, "settled")
     words = Paragraph(
-        "Settled: the unstable speeds of two bases agree; in a narrow range of three, also if borders beside it came "
-        "nearer by twice as much as they moved. Growth rates are those of the basis that stands beside them; in "
-        "brackets, by how much of itself the largest differs in the basis before."
+        "Settled: the unstable speeds of two bases agree, of which the larger has all modes of the disk up to the mesh "
+        "frequency; in a narrow range of three, also if borders beside it came nearer by twice as much as they moved. "
+        "In torsion: those with half the modes of the shafts and with all. Growth rates are those of the basis that "
+        "stands beside them; in brackets, by how much of itself the largest differs in the basis before."
     )
     table = Table(headings, _model_rows(found), "Models and what they come to")
     return Section("Models", (strips, words, table))
@@ -155,12 +158,18 @@ def _model_rows(found: Assessment) -> tuple[tuple[str, ...], ...]:
     if found.file.tolerances.speed:
         motion += f", {rpm(wide[0]):.4g} to {rpm(wide[1]):.4g} rpm"
     torsion = (
-        (motion, name, "", "", *_what_grows(tongues, wide), "", "") for name, tongues in found.torsion.items()
+        (motion, name, "", "", *_what_grows(tongues, wide), *_shafts(found.settled_torsion.get(name)))
+        for name, tongues in found.torsion.items()
     )
     return (*disk, *torsion)
 
 
-def _settled(outcome: Outcome) -> str:
+def _shafts(found: SettledTorsion | None) -> tuple[str, str]:
+    """Modes of shafts with mass, and whether they suffice."""
+    return ("", "") if found is None or not found.modes else (found.modes, _settled(found))
+
+
+def _settled(outcome: Outcome | SettledTorsion) -> str:
     """Say whether unstable speeds stand still, and how far the largest growth rate has moved."""
     words = "yes" if outcome.settled else "NO"
     return words if math.isnan(outcome.growth_moved) else f"{words} ({100 * outcome.growth_moved:.2g} %)"

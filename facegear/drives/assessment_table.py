@@ -12,6 +12,7 @@ import xarray as xr
 from facegear.drives.basis import unstable_share
 from facegear.drives.findings import TORSION
 from facegear.drives.outcome import Outcome
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.maps.tracing import Tongue
 from facegear.support.labelled import text, variable
 from facegear.support.parameters import rpm
@@ -32,6 +33,7 @@ class _Row(NamedTuple):
     settled: float = math.nan
     nodal_circles: float = math.nan
     nodal_diameters: float = math.nan
+    growth_moved: float = math.nan
 
     @property
     def fastest(self) -> Tongue | None:
@@ -43,12 +45,20 @@ def _row(outcome: Outcome, speeds: tuple[float, float]) -> _Row:
     variant, body = outcome.variant, outcome.variant.model.gear.body
     names = (DISK, variant.contact, variant.force, variant.teeth)
     basis = (float(body.nodal_circles), float(body.nodal_diameters))
-    return _Row(*names, outcome.tongues, speeds, float(outcome.settled), *basis)
+    return _Row(*names, outcome.tongues, speeds, float(outcome.settled), *basis, outcome.growth_moved)
+
+
+def _whether_settled(found: SettledTorsion | None) -> tuple[float, float, float, float]:
+    """Whether modes of shafts suffice, no disk, and by how much growth has moved; NaN where there are no modes."""
+    if found is None or not found.modes:
+        return (math.nan,) * 4
+    return float(found.settled), math.nan, math.nan, found.growth_moved
 
 
 def model_table(
     outcomes: Sequence[Outcome],
     torsion: Mapping[str, Sequence[Tongue]],
+    shafts: Mapping[str, SettledTorsion],
     speeds: tuple[float, float],
     wide: tuple[float, float],
     parameters: str,
@@ -61,6 +71,8 @@ def model_table(
         Of the disk's motion.
     torsion : mapping of str to sequence of Tongue
         By contact and arm.
+    shafts : mapping of str to SettledTorsion
+        By the same names, whether the modes of shafts suffice.
     speeds, wide : tuple of float
         Range looked at for the disk, and in torsion [rad/s].
     parameters : str
@@ -70,11 +82,15 @@ def model_table(
     -------
     xarray.Dataset
         Over ``model``, the disk's first: ``unstable_share`` [-], ``largest_growth`` [1/s], at ``fastest_speed``
-        [rad/s], ``tongues``; ``settled`` and the basis, ``nodal_circles`` and ``nodal_diameters``, NaN in torsion;
-        motion, contact, force and teeth, label of what grows fastest and unstable speeds in rpm as coordinates of text.
+        [rad/s], ``tongues``; ``settled``, the basis, ``nodal_circles`` and ``nodal_diameters``, and ``growth_moved``,
+        the part by which the growth differs in the basis before [-], NaN in torsion with massless shafts; motion,
+        contact, force and teeth, label of what grows fastest and unstable speeds in rpm as coordinates of text.
     """
     rows = [_row(outcome, speeds) for outcome in outcomes]
-    rows += [_Row(TORSION, name, "", "", found, wide) for name, found in torsion.items()]
+    rows += [
+        _Row(TORSION, name, "", "", found, wide, *_whether_settled(shafts.get(name)))
+        for name, found in torsion.items()
+    ]
     fastest = [row.fastest for row in rows]
     unstable = [
         "; ".join(f"{rpm(tongue.lower):.6g} to {rpm(tongue.upper):.6g}" for tongue in row.tongues)
@@ -88,6 +104,7 @@ def model_table(
         "settled": ([row.settled for row in rows], "1", 0.0, 0.1),
         "nodal_circles": ([row.nodal_circles for row in rows], "1", 0.0, 0.1),
         "nodal_diameters": ([row.nodal_diameters for row in rows], "1", 0.0, 0.1),
+        "growth_moved": ([row.growth_moved for row in rows], "1", 1e-4, 1e-4),
     }
     meanings = {
         "unstable_share": "Unstable part of the speeds",
@@ -97,6 +114,7 @@ def model_table(
         "settled": "1 where the basis suffices",
         "nodal_circles": "Nodal circles of the basis",
         "nodal_diameters": "Nodal diameters of the basis",
+        "growth_moved": "Part by which the largest growth rate differs in the basis before",
     }
     names = {
         "motion": "Motion",

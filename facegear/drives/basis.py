@@ -178,12 +178,15 @@ class BasisStep:
     tongues : tuple of Tongue
     moved : float
         Part of the range of speed in which this basis and the one before disagree; NaN for the first.
+    reaches : bool
+        Whether all modes of the disk up to the mesh frequency are in it, at all speeds.
     """
 
     nodal_circles: int
     nodal_diameters: int
     tongues: tuple[Tongue, ...]
     moved: float
+    reaches: bool = True
 
 
 @dataclass(frozen=True)
@@ -199,7 +202,8 @@ class SettledTongues:
     steps : tuple of BasisStep
         All bases, ascending.
     settled : bool
-        Whether the last two agree on whether there is a tongue, and within the tolerance on where.
+        Whether the last two agree on whether there is a tongue, and within the tolerance on where, and the last has
+        all modes up to the mesh frequency.
     """
 
     model: FaceGears
@@ -211,6 +215,12 @@ class SettledTongues:
     def tongues(self) -> tuple[Tongue, ...]:
         """Tongues in the last basis."""
         return self.steps[-1].tongues
+
+    @property
+    def sufficient(self) -> BasisStep:
+        """Smaller of the last two where they have settled and it reaches, or the last."""
+        smaller = self.steps[-2:][0]
+        return smaller if self.settled and smaller.reaches else self.steps[-1]
 
     @property
     def unstable_share(self) -> float:
@@ -243,8 +253,10 @@ def settled_tongues(
     """Tongues of a drive in a basis that is raised until they stand still.
 
     In a narrow range they must do so twice in succession, and where all of it is unstable the largest growth rate must
-    have settled as well, to a tenth. Two nodal diameters are added in each step, and a nodal circle where that changes
-    the static stiffness of the disk at its teeth by a third or more of what they do; the bearing stays as it is
+    have settled as well, to a tenth. Two bases that lack the modes which the mesh could excite agree on nothing: only
+    one that has all modes up to the mesh frequency at the highest speed can be the last. Two nodal diameters are added
+    in each step, or as many as that takes, and a nodal circle where it takes one, or where that changes the static
+    stiffness of the disk at its teeth by a third or more of what they do; the bearing stays as it is
     (:func:`with_basis`).
 
     Parameters
@@ -279,15 +291,16 @@ def settled_tongues(
     steps: list[BasisStep] = []
     before: tuple[Tongue, ...] = ()
     shown, still = model, 0
-    for circles, diameters in _bases(model.gear.body, most_steps):
+    for circles, diameters in _bases(model.gear.body, most_steps, judged[1]):
         shown = with_basis(model, circles, diameters) if steps else model
         found = tuple(known) if known is not None and not steps else found_around(shown, judged)
         here = within(shown, found, speeds)
         moved = disagreement(steps[-1].tongues, here, speeds) if steps else math.nan
-        steps.append(BasisStep(circles, diameters, here, moved))
+        reaches = min(_lowest_left_out(model.gear.body, circles, diameters, judged[1])) >= 1.0
+        steps.append(BasisStep(circles, diameters, here, moved, reaches))
         still = still + 1 if len(steps) > 1 and _stands_still(before, found, judged, tolerance) else 0
         settled = SettledTongues(shown, speeds, tuple(steps), settled=True)
-        if still >= (2 if _is_narrow(judged) else 1) and not settled.may_open:
+        if reaches and still >= (2 if _is_narrow(judged) else 1) and not settled.may_open:
             return settled
         before = found
     return SettledTongues(shown, speeds, tuple(steps), settled=False)
@@ -351,8 +364,8 @@ def _moved_on(
     return united(coming), united(going)
 
 
-def _bases(body: Body, most: int) -> list[tuple[int, int]]:
-    """Give M and N of at most so many bases, up to the largest there is."""
+def _bases(body: Body, most: int, speed: float) -> list[tuple[int, int]]:
+    """Give M and N of at most so many bases, up to the largest there is; from the second on they reach, if any does."""
     found = [(body.nodal_circles, body.nodal_diameters)]
     while len(found) < most:
         circles, diameters = found[-1]
@@ -362,10 +375,31 @@ def _bases(body: Body, most: int) -> list[tuple[int, int]]:
         by_circles = np.abs(_softness(body, more_circles, diameters) / here - 1.0).max()
         by_diameters = np.abs(_softness(body, circles, more_diameters) / here - 1.0).max()
         larger = (more_circles if by_circles >= by_diameters / 3.0 else circles, more_diameters)
-        if larger == found[-1]:
+        if (larger := _reaching(body, *larger, speed)) == found[-1]:
             break
         found.append(larger)
     return found
+
+
+def _reaching(body: Body, circles: int, diameters: int, speed: float) -> tuple[int, int]:
+    """Give the smallest basis from one on that has all modes up to the mesh frequency, as far as there are any."""
+    while circles < MAX_NODAL_CIRCLES and _lowest_left_out(body, circles, diameters, speed)[0] < 1.0:
+        circles += 1
+    while diameters < MAX_NODAL_DIAMETERS and _lowest_left_out(body, circles, diameters, speed)[1] < 1.0:
+        diameters += 1
+    return circles, diameters
+
+
+def _lowest_left_out(body: Body, circles: int, diameters: int, speed: float) -> tuple[float, float]:
+    """Lowest frequencies that a basis leaves out, with more circles and with more diameters, over the mesh frequency.
+
+    Of the wave that runs against the gear's turning, as the mesh meets it. Of the largest basis there is, those of its
+    last circle and diameter, which are lower.
+    """
+    more = (min(circles + 1, MAX_NODAL_CIRCLES), min(diameters + 1, MAX_NODAL_DIAMETERS))
+    frequencies = np.sqrt(replace(body, nodal_circles=more[0], nodal_diameters=more[1]).eigenvalues)
+    met = (frequencies - speed * np.arange(more[1] + 1)) / (body.drive.gear_teeth * speed)
+    return float(met[-1].min()), float(met[:, -1].min())
 
 
 def _softness(body: Body, nodal_circles: int, nodal_diameters: int) -> FloatArray:

@@ -173,7 +173,7 @@ the driving force; `facegear report` raises the basis and takes all of them.""",
         metavar="FILE",
         type=_place,
         help="netCDF (.nc), table (.csv), picture (.svg, .png, .pdf); FILE_map.nc, .csv and .svg beside the drive file "
-        "if left out",
+        "if left out; a file is replaced only if an earlier map wrote it",
     )
     _add_jobs(command)
 

@@ -115,7 +115,8 @@ def stability_map(options: argparse.Namespace) -> int:
     """Write a map over speed and one number of a file."""
     file = read_drive_file(options.file)
     # These take longer to load than a mistake takes to be told.
-    from facegear.drives.sweeps import WRITERS, sweep
+    from facegear.drives.map_files import WRITERS, foreign
+    from facegear.drives.sweeps import sweep
 
     beside = Path(options.file)
     outputs = options.output or [
@@ -124,7 +125,7 @@ def stability_map(options: argparse.Namespace) -> int:
     for path in outputs:
         if path.suffix not in WRITERS:
             raise UsageError(f"--output must end in {', '.join(WRITERS)}, got {str(path)!r}")
-        if reason := _not_writable(path.parent):
+        if reason := _not_writable(path.parent) or foreign(path):
             raise UsageError(f"--output must be a file that can be written, got {str(path)!r}: {reason}")
     try:
         found = sweep(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import xarray as xr
 
-from facegear.drives.disk_response import MOST_MOVED, DiskResponse, largest_departure
+from facegear.drives.disk_response import EVEN, MOST_MOVED, RIGID, UNLOADED, DiskResponse, largest_departure
 from facegear.drives.torsion_response import AT_BORDERS, parted
 from facegear.support.parameters import rpm
 
@@ -128,6 +128,11 @@ def parting(found: Sequence[DiskResponse], static: float, in_torsion: xr.Dataset
         "It takes flanks to stay in contact, but under the load of the drive they WOULD PART: "
         f"{', and '.join(told)}; what becomes of the motion then it does not say."
     )
+
+
+def steadiness_known(found: Sequence[DiskResponse]) -> bool:
+    """Whether each model has a forced response, or nothing that could excite one."""
+    return all(each.data is not None or each.reason in (RIGID, UNLOADED, EVEN) for each in found)
 
 
 def rounded(number: float, digits: int) -> str:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from facegear.design.body import Requirements
-from facegear.drives.drive_keys import WIDEST_SPEED_RATIO
+from facegear.drives.drive_keys import NARROWEST_SPEED_RATIO, WIDEST_SPEED_RATIO
 from facegear.drives.file_gearbox import gearbox_models
 from facegear.drives.file_teeth import (
     check_angles,
@@ -231,17 +231,19 @@ def _drive_file(found: FileValues) -> DriveFile:
         transverse = gear if roles is None else built(found, "second_gear", lambda: TwoGears(gear, roles))
     built(found, "material", lambda: built(found, "body", lambda: transverse.gear.bearing_stiffness))
     requirements = _requirements(found, body)
-    torsional, play, cracked = gearbox_models(
-        found, drive, contact, material, requirements.pinion_torque * drive.gear_ratio
+    tolerances = Tolerances(**values["tolerances"])
+    built(found, "tolerances", lambda: tolerances.require_shafts(values["gearbox"] is not None))
+    torque, fastest = (
+        requirements.pinion_torque * drive.gear_ratio,
+        tolerances.widened(requirements.speeds)[1],
     )
+    torsional, play, cracked = gearbox_models(found, drive, contact, material, torque, fastest)
     force_at = values["operation"]["force_at"]
     built(
         found,
         "operation",
         lambda: [pressed(force_at, each, drive).points(drive) for each in contacts.values()],
     )
-    tolerances = Tolerances(**values["tolerances"])
-    built(found, "tolerances", lambda: tolerances.require_shafts(values["gearbox"] is not None))
     return DriveFile(
         name=found.name,
         transverse=transverse,
@@ -278,6 +280,12 @@ def _requirements(found: FileValues, body: Body) -> Requirements:
         raise ValueError(
             f"operation.lowest_speed_rpm must be lower than operation.highest_speed_rpm = {rpm(high):.6g} rpm and at "
             f"least 1/{WIDEST_SPEED_RATIO:g} of it, got {rpm(low):.6g} rpm"
+        )
+    if not high >= NARROWEST_SPEED_RATIO * low * (1 - 1e-12):
+        least = NARROWEST_SPEED_RATIO * low
+        raise ValueError(
+            f"operation.highest_speed_rpm must be at least {NARROWEST_SPEED_RATIO:g} times operation.lowest_speed_rpm "
+            f"= {rpm(low):.9g} rpm, that is {rpm(least):.9g} rpm, got {rpm(high):.9g} rpm"
         )
     if high > limit:
         raise ValueError(

@@ -19,6 +19,8 @@ from facegear.mechanics.two_gears import DRIVES
 
 # Tongues crowd towards standstill: their number, and the time to find them, goes with highest over lowest speed.
 WIDEST_SPEED_RATIO = 50.0
+# Sentences have speeds to four digits: ends that are closer to one another read as one speed.
+NARROWEST_SPEED_RATIO = 1.001
 # What a choice is that the drive itself decides.
 USUAL = "usual"
 
@@ -161,7 +163,8 @@ _OPERATION = Section(
         ),
         Key(
             "highest_speed_rpm",
-            "highest speed of the face gear; its rim at most 0.2 times as fast as sound in its material",
+            f"highest speed of the face gear, at least {NARROWEST_SPEED_RATIO:g} times the lowest; its rim at most 0.2 "
+            "times as fast as sound in its material",
             "number",
             "rpm",
             1.0,
@@ -190,7 +193,7 @@ def _inertia(name: str, meaning: str) -> Key:
 
 
 def _length_of_shaft(name: str, meaning: str) -> Key:
-    meaning = f"{meaning}, of the material of the body; 0 for a massless one"
+    meaning = f"{meaning}, of the material of the body; 0 for a massless one. It has as many modes as the mesh asks for"
     return Key(name, meaning, "number", "mm", 1.0, 2e4, or_zero=True, default=0.0)
 
 

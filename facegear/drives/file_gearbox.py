@@ -7,6 +7,7 @@ from typing import Any
 from facegear.drives.contacts import in_torsion
 from facegear.drives.file_values import FileValues
 from facegear.drives.refusals import built, built_following
+from facegear.drives.shaft_modes import with_enough_modes
 from facegear.geometry.drive import Drive
 from facegear.mechanics.backlash import Backlash
 from facegear.mechanics.contact import Contact
@@ -17,7 +18,7 @@ from facegear.mechanics.torsional import Gearbox, Torsional
 
 
 def gearbox_models(
-    found: FileValues, drive: Drive, contact: Contact, material: Material, torque: float
+    found: FileValues, drive: Drive, contact: Contact, material: Material, torque: float, fastest: float
 ) -> tuple[Torsional | HeavyShafts | None, Backlash | None, DamagedTooth | None]:
     """Build a gearbox: in torsion, with play of its teeth, with a damaged tooth; None for what the file has not.
 
@@ -30,19 +31,21 @@ def gearbox_models(
     material : Material
     torque : float
         That of one pinion on the face gear [N m].
+    fastest : float
+        Highest speed of the face gear, its tolerance included [rad/s], which shafts with mass have modes enough for.
     """
     gearbox = found.values["gearbox"]
     if gearbox is None:
         return None, None, None
     torsional = built_following(
-        found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive), material)
+        found, "gearbox", lambda: _torsional(drive, gearbox, in_torsion(contact, drive), material, fastest)
     )
     play = built(found, "gearbox", lambda: _play(gearbox, torsional, torque))
     return torsional, play, built(found, "gearbox", lambda: _cracked(gearbox, torsional, torque))
 
 
 def _torsional(
-    drive: Drive, gearbox: dict[str, Any], contact: Contact, material: Material
+    drive: Drive, gearbox: dict[str, Any], contact: Contact, material: Material, fastest: float
 ) -> Torsional | HeavyShafts:
     values = {name: value for name, value in gearbox.items() if name not in ("gap", "loss")}
     arm = values.pop("arm")
@@ -51,7 +54,9 @@ def _torsional(
         # The file gives damping as a time.
         values[f"{part}_damping"] *= values[f"{part}_stiffness"]
     massless = Torsional(Gearbox(drive, **values), contact, arm)
-    return HeavyShafts(massless, **lengths, material=material) if any(lengths.values()) else massless
+    if not any(lengths.values()):
+        return massless
+    return with_enough_modes(HeavyShafts(massless, **lengths, material=material), fastest)
 
 
 def _play(gearbox: dict[str, Any], torsional: Any, torque: float) -> Backlash | None:

@@ -20,9 +20,11 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.play import motions_in_tongues
 from facegear.drives.refusals import told
 from facegear.drives.report_rows import Row
+from facegear.drives.shaft_modes import SettledTorsion, confirmed, natural_frequencies, settled_torsion
 from facegear.floquet.models import Model, value_of
-from facegear.maps.tracing import Tongue, tongues
+from facegear.maps.tracing import Tongue
 from facegear.mechanics.mode_shapes import plate_modes
+from facegear.mechanics.torsional import natural_speed
 from facegear.support.parameters import rpm
 from facegear.support.types import FloatArray
 
@@ -93,9 +95,16 @@ class Findings:
         return verdict.cases(self.file, **settings, jobs=self.jobs, tell=self.tell)  # type: ignore[arg-type]
 
     @cached_property
+    def settled_torsion(self) -> SettledTorsion | None:
+        """The gearbox with modes of its shafts enough, and its tongues; None where the file has none."""
+        if self.file.torsional is None:
+            return None
+        return settled_torsion(self.file.torsional, self.speeds, self.tolerance)
+
+    @property
     def torsional_tongues(self) -> tuple[Tongue, ...] | None:
         """Tongues of the gearbox; None where the file has none."""
-        return None if self.file.torsional is None else tuple(tongues(self.file.torsional, self.speeds))
+        return None if self.settled_torsion is None else self.settled_torsion.tongues
 
     @cached_property
     def torsional_failure(self) -> str:
@@ -117,8 +126,9 @@ class Findings:
     def models(self) -> dict[str, Model]:
         """Models whose tongues there are, those of cases in their last basis."""
         models: dict[str, Model] = {case.name: case.found.model for case in self.cases}
-        torsional = self.file.torsional
-        return models if torsional is None or TORSION not in self.tongues else models | {TORSION: torsional}
+        if TORSION in self.tongues and (torsion := self.settled_torsion) is not None:
+            models[TORSION] = torsion.model
+        return models
 
     @cached_property
     def tongue_tables(self) -> dict[str, xr.Dataset]:
@@ -198,9 +208,9 @@ class Findings:
     @cached_property
     def torsional_map(self) -> xr.Dataset | None:
         """Stability over speed and stiffness of the input shaft; None where there is no gearbox."""
-        torsional = self.file.torsional
-        if torsional is None:
+        if self.settled_torsion is None:
             return None
+        torsional = self.settled_torsion.model
         own = float(value_of(torsional, INPUT_STIFFNESS))
         return self._map(torsional, INPUT_STIFFNESS, 2.0 * own)
 
@@ -228,19 +238,20 @@ class Findings:
     @cached_property
     def torsional_rows(self) -> tuple[Row, ...]:
         """Natural frequencies and speeds of the gearbox; empty where there is none."""
-        torsional = self.file.torsional
-        if torsional is None:
+        if self.settled_torsion is None:
             return ()
-        frequencies = torsional.natural_frequencies() / (2 * math.pi)
-        met = rpm(torsional.natural_speeds())
+        torsional = self.settled_torsion.model
+        natural = natural_frequencies(torsional)
+        frequencies = [each / (2 * math.pi) for each in natural]
+        met = [rpm(natural_speed(self.file.drive, each)) for each in natural]
         quantities = (
             ("natural frequency", "Hz", frequencies),
             ("natural speed (mesh frequency = natural frequency)", "rpm", met),
         )
         return tuple(
-            Row(f"torsional {quantity} {k}", float(value), unit)
+            Row(f"torsional {quantity} {k}", confirmed(*pair), unit)
             for quantity, unit, values in quantities
-            for k, value in enumerate(values, start=1)
+            for k, pair in enumerate(zip(*(each.tolist() for each in values), strict=True), start=1)
         )
 
     @cached_property

@@ -29,8 +29,12 @@ def mechanism(tongue: Tongue) -> str:
     >>> from facegear.support.parameters import rad_per_s
     >>> mechanism(Tongue(20.0, 30.0, float(rad_per_s(250.0)), 2.5, Combination(1, 8, "sum", 1)))
     'parametric resonance (1+8)/1 at 250 rpm, growing by 2.5 1/s'
+    >>> mechanism(Tongue(20.0, 30.0, float(rad_per_s(250.0)), 2.5, Combination(0, 0, "mean", 0)))
+    'divergence of the mean system, mean 0 at 250 rpm, growing by 2.5 1/s'
     """
-    kind = "parametric resonance" if tongue.combination.order > 0 else "flutter of the mean system,"
+    named = tongue.combination
+    by_itself = "flutter of the mean system," if named.k > 0 else "divergence of the mean system,"
+    kind = "parametric resonance" if named.order > 0 else by_itself
     return f"{kind} {tongue.label} at {rpm(tongue.peak):.4g} rpm, growing by {tongue.growth_rate:.3g} 1/s"
 
 

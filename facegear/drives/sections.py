@@ -22,6 +22,10 @@ from facegear.plotting.modes import plate_modes as draw_modes
 from facegear.support.parameters import rpm
 
 NOTHING_TO_CHANGE = "No tongue: for stability nothing has to change."
+_DIGITS = (
+    "Natural frequencies are given to as many digits as shafts with all of their modes confirm, and up to the first of "
+    "which that is fewer than three."
+)
 _ADVICE = (findings.power_advice, findings.thickness_advice, findings.change_advice)
 
 
@@ -42,17 +46,23 @@ def verdict(found: Findings) -> Section:
     """Say whether the drive is safe, and what would help."""
     said = verdict_of(found.file, found.cases, found.tongues.get(TORSION))
     unstable = any(found.tongues.values())
+    torsion = None if found.torsional_failure else found.settled_torsion
+    headline, findings = said.headline, said.findings
+    if torsion is not None and torsion.basis:
+        findings = (*findings, torsion.basis)
+    if in_doubt := torsion is not None and not torsion.settled:
+        headline += " NOT SETTLED in torsion: more modes of a shaft may change it."
     parts: list[Part] = [
         Paragraph(f"{found.file.name}.", strong=True),
-        Paragraph(said.headline, "bad" if unstable else "good", strong=True),
-        Listing(said.findings),
+        Paragraph(headline, "bad" if unstable or in_doubt else "good", strong=True),
+        Listing(findings),
     ]
     if found.torsional_failure:
         parts.append(
             Paragraph(f"Torsion is left out, it could not be computed: {found.torsional_failure}", "bad")
         )
     if not unstable:
-        parts.append(Paragraph(NOTHING_TO_CHANGE))
+        parts += [] if in_doubt else [Paragraph(NOTHING_TO_CHANGE)]
     else:
         advice = [sentence for advise in _ADVICE for sentence in _tried(advise, found)]
         parts.append(Paragraph(" ".join(advice)))
@@ -114,8 +124,9 @@ def unstable_speeds(found: Findings) -> Section:
     )
     names = Paragraph(
         "A name such as (1+8)/1 gives the natural frequencies of the mean system that combine, numbered from "
-        "the lowest, "
-        'and how many times the mesh frequency equals their combination; "mean 1" is flutter of the mean system.'
+        "the lowest, and how many times the mesh frequency equals their combination. mean 1: natural motion 1 of the "
+        "mean system grows by itself, oscillating (flutter); mean 0: what grows by itself does not oscillate "
+        "(divergence)."
     )
     rows: list[tuple[str, ...]] = []
     for name, part in found.tongue_tables.items():
@@ -142,8 +153,9 @@ def bases(found: Findings) -> Section:
     """Say how far the number of modes moves the borders."""
     words = Paragraph(
         "A force at one point calls on all modes of the body. The basis is raised, the bearing being kept as "
-        f"it is in N/m, until two in succession disagree in no more than {100 * found.tolerance:g} % of the "
-        f"speeds, and agree on whether there is a tongue at all; at most {found.most_steps} are tried."
+        "it is in N/m, until it has all modes up to the mesh frequency at the highest speed and two in succession, "
+        f"in a narrow range three, disagree in no more than {100 * found.tolerance:g} % of the speeds and agree on "
+        f"whether there is a tongue at all; at most {found.most_steps} are tried."
     )
     rows = []
     for name, *row in zip(*report_columns.basis_columns(found.bases).values(), strict=True):
@@ -230,6 +242,8 @@ def torsion(found: Findings) -> Section:
         ),
         number_table(found.torsional_rows, "Natural frequencies and speeds of the gearbox"),
     ]
+    if found.settled_torsion is not None and (basis := found.settled_torsion.basis):
+        parts.append(Paragraph(f"{basis} {_DIGITS}"))
     if (count := len(found.file.transverse.gear.pinion_angles)) > 1:
         parts.insert(0, Paragraph(f"In torsion there is one pinion; the drive has {count}."))
     if found.file.play is None:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -19,9 +18,7 @@ from facegear.drives.verdict import driven
 from facegear.floquet.models import Model, replace_parameter, system_at, value_of
 from facegear.maps.parallel import parts_of
 from facegear.mechanics.edge_stiffness import Following
-from facegear.support import labelled
 from facegear.support.parameters import finite, integer_within, rad_per_s, rpm
-from facegear.support.tables import write_table
 
 _GEARBOX, _TOLERANCES = "gearbox", "tolerances"
 # Part of its own value that a number is swept on either side.
@@ -142,7 +139,7 @@ def sweep(
         ``"input_stiffness_Nm_per_rad"``.
     lowest, highest : float, optional
         First and last value, in the unit of the key. Default: half and one and a half times that of the file, as far as
-        the key goes.
+        the key goes; where these make no range, as of 0, they must be given.
     speeds_rpm : tuple of float, optional
         Lowest and highest speed of the face gear [rpm]; those of the file if left out.
     cells : int
@@ -168,8 +165,15 @@ def sweep(
         raise ValueError(f"parameter must be one of {', '.join(keys)}, got {key!r}")
     model, chosen = keys[key]
     own = chosen.from_si(value_of(model, chosen.si_name))
-    low = max(_HALF * own, chosen.lowest) if lowest is None else finite("from", lowest)
-    high = min((1.0 + _HALF) * own, chosen.highest) if highest is None else finite("to", highest)
+    low = _nearest(chosen, _HALF * own) if lowest is None else finite("from", lowest)
+    high = _nearest(chosen, (1.0 + _HALF) * own) if highest is None else finite("to", highest)
+    lacking = [flag for flag, value in (("--from", lowest), ("--to", highest)) if value is None]
+    if lacking and not low < high:
+        shown = f"{key} = {own:.6g} {chosen.unit}".rstrip()
+        raise ValueError(
+            f"{' and '.join(lacking)} must be given for {shown}: "
+            "half and one and a half times the file's own value make no range"
+        )
     if not (low < high and chosen.allows(low) and chosen.allows(high)):
         raise ValueError(
             f"from and to must ascend and be {chosen.valid_entry} for {key}, got {low:g} to {high:g}"
@@ -188,6 +192,11 @@ def sweep(
     return Sweep(chosen, own, chart)
 
 
+def _nearest(key: Key, value: float) -> float:
+    """Return the value, or the end of the valid interval that is nearest to it."""
+    return value if key.allows(value) else min(max(value, key.lowest), key.highest)
+
+
 def _require_models(model: Model, key: Key, values: Sequence[float], speed: float) -> None:
     """Refuse values at which there is no such model, or that change nothing of it, before anything is computed."""
     systems = []
@@ -203,37 +212,3 @@ def _require_models(model: Model, key: Key, values: Sequence[float], speed: floa
         raise ValueError(
             f"parameter must be one that changes stability, got {key.name!r}: the model is the same at all its values"
         )
-
-
-def columns(found: Sweep) -> dict[str, list[float]]:
-    """Columns of a table: the number in the file's unit, speed [rpm], growth rate [1/s], one row a cell."""
-    speeds = found.chart["speed_rpm"].values
-    value, speed = np.meshgrid(found.values, speeds, indexing="ij")
-    return {
-        found.key.name: value.ravel().tolist(),
-        "speed_rpm": speed.ravel().tolist(),
-        "growth_rate_per_s": found.chart["growth_rate"].values.ravel().tolist(),
-    }
-
-
-def _write_picture(found: Sweep, path: Path) -> object:
-    from facegear.plotting.report import growth_map
-    from facegear.support.files import written_whole
-
-    unit = f" [{found.key.unit}]" if found.key.unit else ""
-    none = report_arrays.tongue_table((), "")
-    scale = found.key.from_si(1.0)
-    figure = growth_map(found.chart, none, found.key.to_si(found.own), f"{found.key.name}{unit}", scale)
-    with written_whole(path) as place:
-        figure.savefig(place, dpi=150)
-    return path
-
-
-WRITERS: Mapping[str, Callable[[Sweep, Path], object]] = {
-    ".nc": lambda found, path: labelled.save(found.chart, path),
-    ".csv": lambda found, path: write_table(columns(found), path),
-    ".svg": _write_picture,
-    ".png": _write_picture,
-    ".pdf": _write_picture,
-}
-"""What writes a map, by the ending of the file."""

@@ -172,12 +172,15 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     )
     shares = {case: case.found.unstable_share for case in computed}
     unstable = [case for case in computed if shares[case] > 0.0]
+    open_cases = sum(not case.found.settled for case in computed)
     if len(unstable) == len(computed):
         headline = (
             f"Not safe: unstable at some speeds {where}, whatever is assumed of contact ratio and force."
         )
     elif unstable:
         headline = f"Not shown to be safe {where}: it depends on {_what_decides(computed)}."
+    elif open_cases:
+        headline = f"Not shown to be safe {where}: nothing unstable was found, but not all bases suffice."
     else:
         headline = (
             f"Stable at all speeds {where}, under both contact ratios and both directions of the force."
@@ -188,7 +191,6 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
         headline += " In torsion it is unstable at some speeds."
     elif torsional is not None:
         headline += " In torsion it is stable at all of them."
-    open_cases = sum(not case.found.settled for case in computed)
     if open_cases:
         which = "it" if open_cases == 1 else "them"
         headline += (

@@ -18,12 +18,27 @@ from facegear.floquet.compiled import where_compiled
 from facegear.floquet.eigenvalues import eigenvalues
 from facegear.support.types import ComplexArray, FloatArray
 
-# Fewer matrices than this are not worth another library.
-_FEWEST = 32
+# Fewer matrices than this are not worth a batch.
+_FEWEST = 8
 # Largest part of (A − λ) x, relative to the norm of A, and largest product of vectors that belong to different values.
 _LEFT_OVER, _OBLIQUE = 1e-12, 1e-8
 
 T = TypeVar("T", bound=np.generic)
+
+
+class Critical(NamedTuple):
+    """Largest eigenvalue of each matrix, of a conjugate pair the one above the real axis, and its vectors.
+
+    Attributes
+    ----------
+    values : ndarray of complex, shape (V,)
+    right, left : ndarray of complex, shape (V, d)
+        v and w with w v = 1.
+    """
+
+    values: ComplexArray
+    right: ComplexArray
+    left: ComplexArray
 
 
 class Change(NamedTuple):
@@ -37,11 +52,17 @@ class Change(NamedTuple):
         Eigenvalues, zero where a matrix has fewer than others.
     direct, crossed : ndarray of complex, shape (V, m, m)
         wᵢ S vⱼ, and wᵢ S v̄ⱼ, v̄ⱼ being the right vector of the other one of a pair.
+    largest : ndarray of int, shape (V,)
+        Which of the m eigenvalues is the largest.
+    critical : Critical
+        That, and its vectors.
     """
 
     values: ComplexArray
     direct: ComplexArray
     crossed: ComplexArray
+    largest: NDArray[np.intp]
+    critical: Critical
 
 
 def change(matrices: FloatArray, slopes: FloatArray, least: float = 0.0) -> Change:
@@ -75,22 +96,8 @@ def change(matrices: FloatArray, slopes: FloatArray, least: float = 0.0) -> Chan
     # (Re w, Im w) S (Re v, Im v) in real numbers: four products a pair of vectors.
     parts = _products((_rows(left) @ slopes).reshape(left.shape), right)
     direct, crossed = _combined(parts)
-    return Change(values, direct, crossed)
-
-
-class Critical(NamedTuple):
-    """Largest eigenvalue of each matrix, of a conjugate pair the one above the real axis, and its vectors.
-
-    Attributes
-    ----------
-    values : ndarray of complex, shape (V,)
-    right, left : ndarray of complex, shape (V, d)
-        v and w with w v = 1.
-    """
-
-    values: ComplexArray
-    right: ComplexArray
-    left: ComplexArray
+    largest = np.abs(values).argmax(axis=1)
+    return Change(values, direct, crossed, largest, _critical(values, right, left, largest))
 
 
 def critical(matrices: FloatArray) -> Critical:
@@ -116,8 +123,14 @@ def critical(matrices: FloatArray) -> Critical:
     ([2j, (-3+0j)], [1.0, 1.0])
     """
     values, right, left = _vectors(matrices, np.inf)
-    vectors = (part[:, 0, 0] + 1j * part[:, 1, 0] for part in (right, left))
-    return Critical(values[:, 0], *vectors)
+    return _critical(values, right, left, np.zeros(len(values), dtype=np.intp))
+
+
+def _critical(values: ComplexArray, right: FloatArray, left: FloatArray, which: NDArray[np.intp]) -> Critical:
+    """Pick one of the eigenvalues of each matrix, and its vectors."""
+    own = np.arange(len(values))
+    vectors = (part[own, 0, which] + 1j * part[own, 1, which] for part in (right, left))
+    return Critical(values[own, which], *vectors)
 
 
 def _vectors(matrices: FloatArray, least: float) -> tuple[ComplexArray, FloatArray, FloatArray]:

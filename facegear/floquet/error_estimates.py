@@ -142,20 +142,23 @@ def disturbed(scaled: FloatArray, family: Family, method: Method) -> FloatArray:
     end of each of some stretches of the period something is changed, and brought to the end of all: by parts of
     |stretch| |motion|, as the product of two matrices is, and beside a jump of the state in every direction, since a
     method may mix what jumps with what does not. Where motions grow and die within a period, or a jump is taken back by
-    another, that is more than Φ itself shows. The changes are always the same ones.
+    another, that is more than Φ itself shows. And the equations themselves are rounded on the way: a stiff damper along
+    one direction is one along others too, by its last places. What that does to motions which the damper leaves alone
+    remains, and so the change is taken between two stretches. The changes are always the same ones.
     """
     size = scaled.shape[-1]
-    (stretches,), (jumps,) = family.stretches(_STRETCHES)
+    (stretches,), (jumps,), (exponents,) = family.stretches(_STRETCHES)
     whole, *parts = _changes(size, len(stretches) + 1)
     changed = scaled + rounding_error(scaled, family, method) * whole
     places = size + method.rounding(family) / len(stretches)
     arriving, lost = np.eye(size), np.zeros_like(changed)
     with np.errstate(over="ignore", invalid="ignore"):
-        for stretch, jump, part in zip(stretches, jumps, parts, strict=True):
+        for stretch, jump, exponent, part in zip(stretches, jumps, exponents, parts, strict=True):
             added = np.abs(stretch) @ np.abs(arriving)
             if jump > 0.0:
                 added += jump * np.abs(arriving).max()
-            lost = stretch @ lost + added * part
+            rounded = stretch @ (np.abs(exponent) * part) @ stretch @ arriving
+            lost = stretch @ lost + added * part + rounded
             arriving = stretch @ arriving
         lost *= places * np.finfo(float).eps
     # Frozen motions may grow beyond double precision where those of the system do not.

@@ -47,9 +47,9 @@ class Combination:
     ----------
     k, j : int
         Numbers of the natural frequencies, from 1, ascending; equal for a single frequency; 0 if the growing
-        motion of the mean system does not oscillate.
+        motion of the mean system does not oscillate, which is divergence.
     kind : {"sum", "difference", "mean"}
-        sω ≈ ω_k + ω_j, sω ≈ ω_j − ω_k, or the mean system is unstable by itself.
+        sω ≈ ω_k + ω_j, sω ≈ ω_j − ω_k, or a natural motion grows by itself.
     order : int
         s; 0 for the mean system.
     """
@@ -61,7 +61,10 @@ class Combination:
 
     @property
     def label(self) -> str:
-        """Such as "(1+2)/1" or "(3-1)/2", as :attr:`facegear.floquet.hsu.ResonanceBand.label`; "mean 2" for flutter."""
+        """Such as "(1+2)/1" or "(3-1)/2", as :attr:`facegear.floquet.hsu.ResonanceBand.label`.
+
+        "mean 2" for flutter of the second natural motion, "mean 0" for divergence.
+        """
         if self.kind == "mean":
             return f"mean {self.k}"
         if self.kind == "sum":
@@ -131,7 +134,8 @@ def combination(system: PeriodicSystem, method: Method | None = None) -> Combina
     -------
     Combination
         Of all pairs with Ω_a − Ω_b near a multiple of ω the one with the largest product of actions in the motion.
-        "mean" if the mean system by itself grows at least half as fast.
+        "mean" if the mean system by itself grows at least half as fast, or if there is no such pair because the mesh
+        is too fast for any: then of the natural motion with the most energy.
     """
     return growth_and_combination(system, method)[1]
 
@@ -152,10 +156,15 @@ def growth_and_combination(system: PeriodicSystem, method: Method | None = None)
     if growth > 0.0 and modes.eigenvalues[fastest].real >= 0.5 * growth:
         number = int(modes.numbers[fastest])
         return growth, Combination(number, number, "mean", 0)
-    action = np.zeros(modes.eigenvalues.size)
+    action, energy = np.zeros((2, modes.eigenvalues.size))
     for state in _critical_motion(system, complex(values[critical]), vectors[:, critical], method):
         action += modes.action(state)
-    return growth, _strongest_pair(modes, action, 2.0 * np.pi / system.period)
+        energy += modes.energy(state)
+    pair = _strongest_pair(modes, action, 2.0 * np.pi / system.period)
+    if pair is None:
+        number = int(modes.numbers[energy.argmax()])
+        return growth, Combination(number, number, "mean", 0)
+    return growth, pair
 
 
 def moving_parts(system: PeriodicSystem, coordinates: Sequence[Coordinate]) -> tuple[str, ...]:
@@ -228,11 +237,16 @@ class _MeanModes:
         # Nearly dependent motions, as at critical damping, only blur the shares.
         return cls(values, numbers, np.linalg.pinv(motions.vectors) @ motions.from_state)
 
+    def energy(self, state: ComplexArray) -> FloatArray:
+        """Energy of each natural motion in a state."""
+        return np.asarray(np.abs(self.coordinates @ state) ** 2, dtype=float)
+
     def action(self, state: ComplexArray) -> FloatArray:
         """Energy over frequency of each natural motion in a state, in parts of the whole."""
-        energy = np.abs(self.coordinates @ state) ** 2
         frequency = np.abs(self.eigenvalues.imag)
-        action = np.where(self.numbers > 0, energy / np.where(frequency > 0.0, frequency, 1.0), 0.0)
+        action = np.where(
+            self.numbers > 0, self.energy(state) / np.where(frequency > 0.0, frequency, 1.0), 0.0
+        )
         return np.asarray(action / max(float(action.sum()), np.finfo(float).tiny), dtype=float)
 
 
@@ -251,15 +265,15 @@ def _critical_state(system: PeriodicSystem, critical: complex, method: Method | 
     return np.asarray(vectors[:, np.abs(values - critical).argmin()], dtype=complex)
 
 
-def _strongest_pair(modes: _MeanModes, action: FloatArray, frequency: float) -> Combination:
-    """Pair of natural motions in step with one another that has the largest part in the motion."""
+def _strongest_pair(modes: _MeanModes, action: FloatArray, frequency: float) -> Combination | None:
+    """Pair of natural motions in step with one another that has the largest part in the motion, if there is one."""
     oscillating = np.flatnonzero(modes.numbers > 0)
     turns, parts = modes.eigenvalues.imag[oscillating] / frequency, np.sqrt(action[oscillating])
     apart = turns[:, np.newaxis] - turns
     orders = np.round(apart)
     weights = np.outer(parts, parts) / (1.0 + (np.abs(apart - orders) / _DETUNING) ** 2)
     if not (orders >= 1.0).any():
-        return Combination(0, 0, "mean", 0)
+        return None
     a, b = np.unravel_index(int(np.where(orders >= 1.0, weights, -1.0).argmax()), weights.shape)
     k, j = sorted(modes.numbers[oscillating[[a, b]]].tolist())
     kind: Kind = "sum" if turns[a] * turns[b] < 0.0 else "difference"

@@ -285,7 +285,7 @@ class Family:
                 total = chain(steps) @ total
         return np.asarray(total)
 
-    def stretches(self, fewest: int) -> tuple[FloatArray, FloatArray]:
+    def stretches(self, fewest: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Roughly what each part of the period does to the scaled state, enough to tell how large motions grow.
 
         By the midpoint rule, P parts, at least `fewest`.
@@ -296,17 +296,20 @@ class Family:
             Jumps at the starts put in.
         sizes : array, shape (V, P)
             ‖S J S⁻¹ − I‖ of these jumps, 0 where there is none.
+        exponents : array, shape (V, P, 2n, 2n)
+            Matrices of the parts times their length, of which those without their jumps are exponentials.
         """
         edges = aligned_edges(self.breakpoints, fewest)
         start, length = edges[:-1], np.diff(edges)
         with np.errstate(over="ignore", invalid="ignore"):
-            steps = midpoint(start, length, self.state_matrices)
+            exponents = self.state_matrices(start + length / 2.0) * length[:, None, None]
+            steps = exponentials(exponents)
             self._put_in_jumps(steps, start)
         sizes = np.zeros(steps.shape[:2])
         for number, jumps in enumerate(self._scaled_jumps):
             for at, jump in jumps.items():
                 sizes[number, np.abs(start - at) < SAME_INSTANT] = np.linalg.norm(jump - np.eye(len(jump)), 2)
-        return steps, sizes
+        return steps, sizes, exponents
 
     def _put_in_jumps(self, steps: FloatArray, start: FloatArray) -> None:
         """Precede the sub-interval that starts at the instant of a jump by the jump of the state."""

@@ -69,8 +69,7 @@ def meetings(
         centres, reach = meeting[moving], 0.5 * distance[moving]
         if centres.size == 0:
             break
-    columns = ((scan.speeds, scan.radii, scan.slopes) for scan in samples)
-    return np.concatenate(found), Scan(*np.concatenate(list(columns), axis=1))
+    return np.concatenate(found), Scan.joined(samples)
 
 
 def _distinct(points: FloatArray, tolerance: FloatArray) -> FloatArray:
@@ -100,15 +99,14 @@ def _foretold(
     inside = (1.0 / centres >= curve.lowest_speed) & (1.0 / centres <= curve.highest_speed)
     centres, reach = centres[inside], reach[inside]
     if centres.size == 0:
-        return centres, reach, Scan(centres, centres, centres)
-    values, direct, crossed = change(
+        return centres, reach, Scan.of(curve, centres)
+    values, direct, crossed, largest, critical = change(
         curve.transition_matrices(1.0 / centres), curve.slopes(1.0 / centres), _DECAYED
     )
     values = np.where(values == 0.0, 1e-300, values)
     rates = np.einsum("vii->vi", direct) / values
-    largest = np.abs(values).argmax(axis=1)[:, np.newaxis]
-    radii, slopes = (np.take_along_axis(part, largest, axis=1)[:, 0] for part in (np.abs(values), rates.real))
-    samples = Scan(1.0 / centres, radii, slopes)
+    slopes = rates.real[np.arange(largest.size), largest]
+    samples = Scan.of_critical(1.0 / centres, critical, slopes)
     # Of a pair off the real axis and its conjugate, which says the same, one: both above the axis, or the second below.
     above = np.triu(np.ones(direct.shape[1:], dtype=bool), 1)
     below = np.triu(values.imag[:, np.newaxis] > 0.0)

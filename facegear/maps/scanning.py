@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from facegear.floquet.multiplier_curves import MultiplierCurve
 from facegear.maps.meetings import meetings
-from facegear.maps.scans import SPEED_TOLERANCE, Critical, Scan, critical_motions
+from facegear.maps.scans import SPEED_TOLERANCE, Motion, Scan
 from facegear.support.types import FloatArray
 
 # Largest angle [rad] by which the fastest live motion turns from one sample to the next.
@@ -73,26 +73,40 @@ def _may_pass(here: FloatArray, foretold: FloatArray, there: FloatArray) -> NDAr
 def _gaps(curve: MultiplierCurve, scan: Scan, threshold: float) -> Scan:
     """Look between unstable samples for speeds that separate tongues which lie close together.
 
-    Intervals between unstable samples are halved where the critical motion is not the same at both ends, or the
-    growth is not near a straight line, until a stable speed is found or nothing is left to see.
+    Intervals between unstable samples are halved where no motion leads from one end to the other, or the growth is not
+    near a straight line, until a stable speed is found or nothing is left to see.
     """
     unstable = scan.radii - 1.0 > threshold
-    samples = dict(
-        zip(np.flatnonzero(unstable).tolist(), critical_motions(curve, scan.speeds[unstable]), strict=True)
-    )
+    samples = dict(zip(np.flatnonzero(unstable).tolist(), scan.some(unstable).motions(), strict=True))
     intervals = [(samples[i], samples[i + 1]) for i in samples if i + 1 in samples]
-    found: list[Critical] = []
+    found = []
     for _ in range(_MOST_HALVINGS):
         intervals = [(a, b) for a, b in intervals if b.speed - a.speed > SPEED_TOLERANCE * b.speed]
         if not intervals:
             break
-        middles = np.array([(a.speed + b.speed) / 2.0 for a, b in intervals])
+        found.append(Scan.of(curve, np.array([(a.speed + b.speed) / 2.0 for a, b in intervals])))
         halves = []
-        for (a, b), middle in zip(intervals, critical_motions(curve, middles), strict=True):
-            found.append(middle)
+        for (a, b), middle in zip(intervals, found[-1].motions(), strict=True):
             left, between, right = (each.radius - 1.0 - threshold for each in (a, middle, b))
             if between > 0.0:
                 curved = abs(between - (left + right) / 2.0) > _STRAIGHT * min(left, between, right)
-                halves += [(c, d) for c, d in ((a, middle), (middle, b)) if curved or not c.continues(d)]
+                halves += [
+                    (c, d) for c, d in ((a, middle), (middle, b)) if curved or not _joined(c, d, threshold)
+                ]
         intervals = halves
-    return Scan.of_motions(found)
+    return Scan.joined([*found, scan.some(slice(0))])
+
+
+def _joined(one: Motion, other: Motion, threshold: float) -> bool:
+    """Whether two unstable samples are of one tongue: of one motion, or of two that take over from each other.
+
+    Tangents of two motions that both stay unstable meet between the samples, not far below them. Ahead of a stable
+    speed growth falls like a root, whose tangent at the last unstable sample is half as high where the root ends.
+    """
+    if one.continues(other):
+        return True
+    step = 1.0 / other.speed - 1.0 / one.speed
+    here, there = (np.log(each.radius) - threshold for each in (one, other))
+    apart = (one.slope - other.slope) * step
+    part = (there - here - other.slope * step) / apart if apart != 0.0 else np.nan
+    return bool(0.0 < part < 1.0 and here + part * one.slope * step >= (1.0 - _STRAIGHT) * min(here, there))

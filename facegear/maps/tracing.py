@@ -324,7 +324,7 @@ def _runs(curve: MultiplierCurve, scan: Scan, threshold: float) -> list[tuple[fl
     inner = (edges > 0) & (edges < scan.speeds.size)
     speeds[inner] = _borders(curve, scan, edges[inner], threshold)
     return [
-        (lower, upper, _peak(curve, scan.between(start, stop), lower, upper))
+        (lower, upper, _peak(curve, scan.some(slice(start, stop)), lower, upper))
         for (lower, upper), (start, stop) in zip(
             speeds.reshape(-1, 2).tolist(), edges.reshape(-1, 2).tolist(), strict=True
         )

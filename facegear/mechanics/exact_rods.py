@@ -9,6 +9,7 @@ double ones included.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -107,8 +108,9 @@ def exact_frequencies(
     if not shafts:
         raise ValueError("shafts must list at least one shaft, got none")
     count = integer_at_least("count", count, 1)
-    # One half wave of the longest rod: from there on it only takes doubling.
-    lowest = min(np.pi * shear_wave_speed(x.rod.material) / x.rod.length for x in shafts)
+    # About one half wave of the longest rod: from there on it only takes doubling. No whole number of half waves of any
+    # rod, at which the dynamic stiffness has a pole and cannot be counted: lengths are rational numbers.
+    lowest = min(np.pi * shear_wave_speed(x.rod.material) / x.rod.length for x in shafts) / math.sqrt(2.0)
     found: list[float] = []
     for number in range(count):
         low, high = (found[-1] if found else 0.0), float(lowest)

@@ -41,10 +41,11 @@ class HeavyShafts:
         The gearbox with massless shafts (chapter 7), whose stiffnesses and dampings the shafts keep.
     input_length, output_length : float
         l1, l2 of the shafts [m], from 0.001 to 20, or 0 for a massless one.
-    modes : int
-        Number n of modes of each shaft with both ends held, from 0 to 40. Errors fall with its third power while the
-        cost of a growth rate rises as fast or faster: of Fig. 7.13(a) with shafts of 0.3 m at 500 rpm, -194 1/s, two
-        modes miss 0.09 1/s and ten 0.002 1/s; ten take a fraction of a second, forty some fifty times as long.
+    modes : int or tuple of int
+        Number n of modes of each shaft with both ends held, from 0 to 40; a pair if input and output shaft have not the
+        same. Errors fall with its third power while the cost of a growth rate rises as fast or faster: of Fig. 7.13(a)
+        with shafts of 0.3 m at 500 rpm, -194 1/s, two modes miss 0.09 1/s and ten 0.002 1/s; ten take a fraction of a
+        second, forty some fifty times as long.
     material : Material
         Of the shafts.
 
@@ -66,14 +67,14 @@ class HeavyShafts:
     torsional: Torsional
     input_length: float = field(metadata=designed("length of the input shaft"))
     output_length: float = field(metadata=designed("length of the output shaft"))
-    modes: int = 2
+    modes: int | tuple[int, int] = 2
     material: Material = STEEL
 
     def __post_init__(self) -> None:
         require_kinds(self, torsional=Torsional, material=Material)
         for name in ("input_length", "output_length"):
             keep(self, **{name: _checked_length(name, getattr(self, name))})
-        keep(self, modes=integer_within("modes", self.modes, 0, MOST_MODES))
+        keep(self, modes=_checked_modes(self.modes))
 
     @property
     def gearbox(self) -> InSi:
@@ -81,16 +82,26 @@ class HeavyShafts:
         return self.torsional.gearbox
 
     @property
+    def modes_of_each(self) -> tuple[int, int]:
+        """Numbers of modes of the input shaft and of the output shaft, 0 for a massless one."""
+        first, second = self.modes if isinstance(self.modes, tuple) else (self.modes, self.modes)
+        return first if self.input_length else 0, second if self.output_length else 0
+
+    @property
     def input_rod(self) -> Rod:
         """Shaft from the input to the pinion, if it has mass."""
         box = self.torsional.gearbox.in_si
-        return Rod(box.input_stiffness, self.input_length, box.input_damping, self.modes, self.material)
+        return Rod(
+            box.input_stiffness, self.input_length, box.input_damping, self.modes_of_each[0], self.material
+        )
 
     @property
     def output_rod(self) -> Rod:
         """Shaft from the face gear to the load, if it has mass."""
         box = self.torsional.gearbox.in_si
-        return Rod(box.output_stiffness, self.output_length, box.output_damping, self.modes, self.material)
+        return Rod(
+            box.output_stiffness, self.output_length, box.output_damping, self.modes_of_each[1], self.material
+        )
 
     @property
     def shafts(self) -> tuple[Shaft, ...]:
@@ -101,12 +112,10 @@ class HeavyShafts:
     @property
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Angles χ1, χ2, χo (7-9) and the modes y_j of the input shaft, then of the output shaft."""
-        lengths = {"input shaft": self.input_length, "output shaft": self.output_length}
         modes = [
             Coordinate(f"{shaft}, mode {number}", "rad", shaft)
-            for shaft, length in lengths.items()
-            if length
-            for number in range(1, self.modes + 1)
+            for shaft, count in zip(("input shaft", "output shaft"), self.modes_of_each, strict=True)
+            for number in range(1, count + 1)
         ]
         return (*self.torsional.coordinates, *modes)
 
@@ -193,6 +202,15 @@ class HeavyShafts:
             If `speed` is not a finite number greater than 0.
         """
         return with_mass(self.torsional.system(speed), self.shafts)
+
+
+def _checked_modes(value: object) -> int | tuple[int, int]:
+    if not isinstance(value, tuple):
+        return integer_within("modes", value, 0, MOST_MODES)
+    if len(value) != 2:
+        raise ValueError(f"modes must be one number, or two of input and output shaft, got {value!r}")
+    first, second = (integer_within("modes", each, 0, MOST_MODES) for each in value)
+    return first, second
 
 
 def _checked_length(name: str, value: object) -> float:

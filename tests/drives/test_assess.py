@@ -1,5 +1,6 @@
 """An assessment: what follows from what its models come to, and that these are what they are called."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from facegear.drives.assess import _Found, _in_torsion, _Tried, assess
 from facegear.drives.assessment import Assessment
 from facegear.drives.assessment_files import PAGE, sections, write_assessment
 from facegear.drives.basis import with_basis
+from facegear.drives.disk_response import RIGID as RIGID_TEETH
+from facegear.drives.disk_response import DiskResponse
 from facegear.drives.drive_file import parse_drive, read_drive_file
 from facegear.drives.findings import TORSION, Findings
 from facegear.drives.growth_words import told
@@ -19,6 +22,7 @@ from facegear.drives.intervals import gaps
 from facegear.drives.outcome import Outcome
 from facegear.drives.page import page
 from facegear.drives.sections import torsion as torsion_section
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import RIGID, RIGID_TOTAL, Variant, plain_contacts
 from facegear.drives.verdict import FORCES, cases
@@ -26,6 +30,7 @@ from facegear.drives.worst_case import WorstCase, not_known
 from facegear.floquet.labels import Combination
 from facegear.floquet.response import steady_response
 from facegear.maps.tracing import Tongue, tongues
+from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.support.parameters import rad_per_s, rpm
 from tests.drives.test_page import HOSTILE, Reader
 
@@ -60,6 +65,15 @@ class TestVerdict:
             "Speeds at which every model is known to be stable: 100 to 1000 rpm. "
             "Speeds at which all models are unstable: no speed."
         )
+
+    def test_that_nobody_knows_whether_flanks_part_is_said_beside_safe(self):
+        safe = outcome("Tregold", DEAD, RIGID)
+        words = "Whether flanks stay in contact under the load of the drive is not known (Dynamic load)."
+        for reason, known in ((RIGID_TEETH, True), ("between two gears it is not computed", False)):
+            response = DiskResponse(safe.variant, 0.0, None, reason)
+            found = replace(assessment(safe), disk_responses=(response,))
+            assert found.verdict == "safe under all"
+            assert (words in found.headline) == (not known)
 
     def test_unstable_under_all_though_not_at_the_same_speeds(self):
         found = assessment(
@@ -116,6 +130,15 @@ class TestVerdict:
             "200, 290 to 1000 rpm.",
         )
         assert told(found.always_stable) == "100 to 200, 290 to 1000 rpm"
+
+    @pytest.mark.parametrize(("number", "kind"), [(1, "flutter"), (0, "divergence")])
+    def test_what_grows_by_itself_is_called_by_its_name(self, tmp_path, number, kind):
+        """A motion that does not oscillate was called a flutter, and its name explained nowhere."""
+        alone = replace(tongue(240, 260, 7.5), combination=Combination(number, number, "mean", 0))
+        found = assessment(outcome("Tregold", DEAD, RIGID, alone))
+        text = Reader(write_assessment(found, tmp_path).read_text(encoding="utf-8")).text
+        assert f"Worst: {kind} of the mean system, mean {number} at 250 rpm" in text
+        assert re.search(rf"mean {number}: [^:]*\({kind}\)", text)
 
     def test_growth_at_a_value_in_the_tolerances_is_told(self, tmp_path):
         """A corner that grows faster than every model at the values of the file is the worst, with its factors."""
@@ -240,7 +263,29 @@ class TestVerdict:
 
     def test_what_has_not_settled_says_so(self):
         found = assessment(outcome("Tregold", DEAD, RIGID, settled=False))
-        assert found.headline.endswith("NOT SETTLED in 1 of 1 models: a larger basis may turn it.")
+        assert "NOT SETTLED in 1 of 1 models: a larger basis may turn it." in found.headline
+        # Nothing unstable was found, and that is not enough to be safe.
+        assert found.verdict == "depends"
+        assert found.decides == ("bases that have not settled",)
+        assert (
+            "no model was found unstable, which does not make them stable: 100 to 1000 rpm" in found.headline
+        )
+        assert "every model is known to be stable" not in found.headline
+
+    def test_torsion_whose_shafts_lack_modes_makes_no_drive_safe(self):
+        name, speeds = "Tregold, arm as printed", CASE_1.requirements.speeds
+        box = read_drive_file(DRIVES / "gearbox_table_7_1.yaml").torsional
+        shafts = {name: SettledTorsion(HeavyShafts(box, 0.0, 3.0, modes=40), speeds, (), settled=False)}
+        stable = assessment(outcome("Tregold", DEAD, RIGID), torsion={name: ()})
+        found = replace(stable, settled_torsion=shafts)
+        assert (stable.verdict, found.verdict) == ("safe under all", "depends")
+        assert found.decides == ("more modes of a shaft in torsion",)
+        assert (
+            "NOT SETTLED in 1 of 1 models of torsion: more modes of a shaft may turn it. Speeds at which no model was "
+            "found unstable, which does not make them stable"
+        ) in found.headline
+        assert "40 modes of the output shaft" in page("drive", sections(found))
+        assert found.table()["settled"].values[-1] == 0.0
 
 
 def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all():
@@ -258,7 +303,9 @@ def test_each_model_of_torsion_unstable_somewhere_is_no_speed_unstable_under_all
 def test_models_are_listed_with_their_basis_and_those_of_torsion_too(tmp_path):
     """Each in its own basis, which is not that of the file, as the provenance says."""
     richer = with_basis(CASE_1.transverse, 2, 5)
-    disk = Outcome(Variant("Tregold", DEAD, RIGID, richer), (tongue(200, 300), tongue(400, 410, 3.0)), True)
+    disk = Outcome(
+        Variant("Tregold", DEAD, RIGID, richer), (tongue(200, 300), tongue(400, 410, 3.0)), True, 0.04
+    )
     file = replace(CASE_1, tolerances=Tolerances(speed=0.1))
     found = assessment(disk, torsion={"Tregold, arm as printed": (tongue(95, 97, 90.0),)}, file=file)
     table = found.table()
@@ -281,7 +328,9 @@ def test_models_are_listed_with_their_basis_and_those_of_torsion_too(tmp_path):
     )
     rows = (tmp_path / "models.csv").read_text(encoding="utf-8-sig").splitlines()
     assert rows[1].startswith("disk,Tregold,")
-    assert ",2,5,(1+8)/1,200 to 300; 400 to 410" in rows[1]
+    assert ",2,5,0.04,(1+8)/1,200 to 300; 400 to 410" in rows[1]
+    # What grows fastest of all does so beyond the operating speeds.
+    assert "at 96 rpm, growing by 90 1/s (torsion; Tregold, arm as printed, outside the range" in text
     assert rows[2].startswith('torsion,"Tregold, arm as printed",,,')
 
 

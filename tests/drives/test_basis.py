@@ -117,10 +117,49 @@ class TestSettledTongues:
         assert told.tongues == last.tongues
 
     def test_settles_where_nothing_moves(self):
-        quiet = (float(rad_per_s(960.0)), float(rad_per_s(990.0)))
-        found = settled_tongues(CASE_1, quiet, most_steps=3)
+        quiet, thick = (
+            (float(rad_per_s(960.0)), float(rad_per_s(990.0))),
+            replace(CASE_1.body, thickness_ratio=0.1),
+        )
+        found = settled_tongues(replace(CASE_1, body=thick), quiet, most_steps=4)
         assert found.settled
         assert found.steps[-1].moved == 0.0
+
+    def test_bases_without_the_modes_that_the_mesh_excites_agree_on_nothing(self):
+        # Without nodal diameters two bases have no tongue, and none of their modes is as fast as the mesh. With (1, 4)
+        # growth is 26.4 1/s at 661.6 rpm, by integration (DOP853); DOP853 has it so in (1, 6) too, less.
+        file = parse_drive(
+            "name: no diameters\n"
+            "gears: {pinion_teeth: 26, gear_teeth: 130, module_mm: 3.175}\n"
+            "body: {thickness_ratio: 0.03, bore_radius_mm: 50, nodal_diameters: 0, nodal_circles: 0}\n"
+            "material: {viscous_loss_factor_us: 2}\n"
+            "pinions: {stiffness: 0.065, damping_us: 3, mass: 1}\n"
+            "operation: {lowest_speed_rpm: 655, highest_speed_rpm: 670, power_kW: 5, pinion_speed_rpm: 5000}\n"
+        )
+        model, speeds = (
+            driven(file, "follower", plain_contacts(file)["Tregold"]),
+            file.requirements.speeds,
+        )
+        found = settled_tongues(model, speeds, most_steps=2)
+        assert [step.reaches for step in found.steps] == [False, True]
+        assert not found.steps[0].tongues
+        assert not found.settled
+        (tongue,) = found.tongues
+        assert tongue.lower < rad_per_s(661.6) < tongue.upper
+        assert growth_rate(with_basis(model, 1, 4).system(float(rad_per_s(661.6)))) == pytest.approx(
+            26.4, abs=0.05
+        )
+
+    @pytest.mark.parametrize("highest", [1000.0, 3000.0])
+    def test_the_last_basis_has_all_modes_up_to_the_mesh_frequency_if_any_has(self, highest):
+        speed = float(rad_per_s(highest))
+        circles, diameters = basis._bases(CASE_1.body, 2, speed)[-1]
+        body = replace(CASE_1.body, nodal_circles=4, nodal_diameters=10)
+        below = np.argwhere(body.natural_frequencies_hz() < 130 * highest / 60)
+        assert (below <= (circles, diameters)).all()
+        # At 3000 rpm modes beyond those of the largest basis are below it too.
+        reaches = min(basis._lowest_left_out(CASE_1.body, circles, diameters, speed)) >= 1.0
+        assert reaches == (highest == 1000.0)
 
     def test_a_tongue_beside_a_narrow_range_that_comes_nearer_asks_for_more(self):
         # Nothing is unstable here with up to seven nodal diameters; with nine it is all of it.

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from facegear.drives import commands, sweeps
+from facegear.drives import commands, map_files, sweeps
 from facegear.drives.command import main
 from facegear.drives.drive_file import read_drive_file
 from facegear.drives.drive_schema import schema
@@ -192,6 +192,7 @@ def test_a_map_in_three_kinds_of_files(here, capsys):
     [
         ("--parameter no_such", "parameter must be one of module_mm"),
         ("--from 2 --to 1", "from and to must ascend"),
+        ("--from 2", "--to must be given for stiffness = 1: half and one and a half times the file's own"),
         (
             "--parameter bore_radius_mm --from 10 --to 500",
             "with bore_radius_mm = 10 mm: body.bore_radius_mm must lie in [11.5969, 188.433] in mm, got 10 mm",
@@ -219,17 +220,43 @@ def test_a_map_that_there_is_not(here, capsys, words, told):
     assert [path.name for path in here.iterdir()] == ["my.yaml"]
 
 
+@pytest.mark.parametrize("end", list(map_files.WRITERS))
+def test_a_file_that_no_map_wrote_is_not_replaced(here, capsys, monkeypatch, end):
+    """`echo precious > p.csv; facegear map --output p.csv` replaced it."""
+
+    def computes(*_, **__):
+        raise AssertionError("something was computed")
+
+    monkeypatch.setattr(sweeps, "sweep", computes)
+    (here / "my.yaml").write_text(CASE_1, encoding="utf-8")
+    (here / f"p{end}").write_text("precious\n", encoding="utf-8")
+    assert main(["map", "my.yaml", "--cells", "2", "--output", "other.csv", f"p{end}"]) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert f"--output must be a file that can be written, got 'p{end}': p{end} is there and would be" in told
+    assert (here / f"p{end}").read_text(encoding="utf-8") == "precious\n"
+    assert sorted(path.name for path in here.iterdir()) == ["my.yaml", f"p{end}"]
+
+
+def test_an_earlier_map_is_replaced(here, capsys):
+    (here / "my.yaml").write_text(CASE_1, encoding="utf-8")
+    for most in ("600", "700"):
+        assert main(["map", "my.yaml", "--cells", "2", "--speeds", "500", most, "--jobs", "1"]) == 0
+        assert load(here / "my_map.nc")["speed_rpm"].values.tolist() == [500.0, float(most)]
+
+
 def test_a_map_that_is_interrupted_leaves_no_file_of_three(here, monkeypatch):
     (here / "my.yaml").write_text(CASE_1, encoding="utf-8")
-    (here / "my_map.csv").write_text("older")
+    older = "mass,speed_rpm,growth_rate_per_s\n"
+    (here / "my_map.csv").write_text(older)
 
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(sweeps, "WRITERS", dict(sweeps.WRITERS) | {".svg": interrupted})
+    monkeypatch.setattr(map_files, "WRITERS", dict(map_files.WRITERS) | {".svg": interrupted})
     assert main(["map", "my.yaml", "--cells", "2", "--speeds", "500", "600", "--jobs", "1"]) == 130
     assert sorted(path.name for path in here.iterdir()) == ["my.yaml", "my_map.csv"]
-    assert (here / "my_map.csv").read_text() == "older"
+    assert (here / "my_map.csv").read_text() == older
 
 
 def test_examples_are_listed_and_printed(capsys):

@@ -188,6 +188,17 @@ def test_every_speed_that_is_accepted_can_be_computed(name):
         ),
         ("lowest_speed_rpm: 100", "lowest_speed_rpm: 1000", r"operation.lowest_speed_rpm .*got 1000 rpm"),
         (
+            "lowest_speed_rpm: 100\n  highest_speed_rpm: 1000",
+            "lowest_speed_rpm: 300\n  highest_speed_rpm: 300.001",
+            r"operation.highest_speed_rpm must be at least 1.001 times operation.lowest_speed_rpm = 300 rpm, that is "
+            r"300.3 rpm, got 300.001 rpm$",
+        ),
+        (
+            "lowest_speed_rpm: 100\n  highest_speed_rpm: 1000",
+            "lowest_speed_rpm: 300\n  highest_speed_rpm: 300.0000000000001",
+            r"operation.highest_speed_rpm must be at least 1.001 times .*, got 300 rpm$",
+        ),
+        (
             "pinion_teeth: 26\n  gear_teeth: 130",
             "pinion_teeth: 130\n  gear_teeth: 26",
             r"must exceed gears.pinion_teeth=130, got 26 \(gears.pinion_teeth and gears.gear_teeth swapped\?\)",

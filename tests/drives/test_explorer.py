@@ -214,8 +214,8 @@ def test_a_change_ends_a_map_that_is_being_filled(widget, monkeypatch):
     taken = []
 
     def noted(*given):
+        turn = len(taken)
         taken.append(0)
-        turn = len(taken) - 1
         for chart in explore.map_stages(*given):
             taken[turn] += 1
             yield chart
@@ -225,21 +225,22 @@ def test_a_change_ends_a_map_that_is_being_filled(widget, monkeypatch):
     async def change():
         widget.controls["damping_ratio"].value = 0.1
         said = [text(widget.status)]
-        while "eighth" in text(widget.status):
+        while "every eighth row" in text(widget.status):
             await asyncio.sleep(0.001)
         said.append(text(widget.status))
-        so_far = taken[0]
+        taken.append(taken[0])
         widget.controls["damping_ratio"].value = 0.05
         while "refining" in text(widget.status):
             await asyncio.sleep(0.001)
-        return *said, so_far
+        return said
 
-    coarse, finer, so_far = asyncio.run(change())
+    coarse, finer = asyncio.run(change())
     assert re.fullmatch(
         r"refining: every eighth row at every fourth speed and \d+% of all cells are final", coarse
     )
     assert "every second row at every speed" in finer
-    assert taken[0] == so_far < taken[1]
+    first, when_changed, second = taken
+    assert first == when_changed < second
     assert "refined in" in text(widget.status)
 
 

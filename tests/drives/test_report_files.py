@@ -52,6 +52,12 @@ def test_one_part_that_fails_leaves_the_others(results):
     assert "critical thickness" not in table
 
 
+def test_names_of_what_grows_by_itself_are_explained(results):
+    text = Reader(results[0].read_text(encoding="utf-8")).text
+    assert "mean 1: natural motion 1 of the mean system grows by itself, oscillating (flutter)" in text
+    assert "mean 0: what grows by itself does not oscillate (divergence)" in text
+
+
 def test_all_names_of_files_are_known(results):
     page, _ = results
     assert {path.name for path in page.parent.iterdir()} <= set(report_files.FILES)
@@ -110,7 +116,7 @@ def test_torsion_that_fails_leaves_the_disk(tmp_path, monkeypatch):
     def fails(*_, **__):
         raise ArithmeticError("multipliers are not known")
 
-    monkeypatch.setattr(findings, "tongues", fails)
+    monkeypatch.setattr(findings, "settled_torsion", fails)
     found = Findings(file, cells=3, most_steps=1, jobs=1)
     assert "torsion" not in found.tongues
     for title, make, told in (

@@ -1,17 +1,14 @@
 """Maps over any number of a drive file, in the file's units."""
 
-import csv
-
 import numpy as np
 import pytest
 
 from facegear.drives.drive_file import parse_drive
 from facegear.drives.examples import example_text
-from facegear.drives.sweeps import WRITERS, columns, models, sweep, sweepable
+from facegear.drives.sweeps import models, sweep, sweepable
 from facegear.drives.verdict import driven
 from facegear.floquet.models import replace_parameter
 from facegear.floquet.multipliers import growth_rate
-from facegear.support.labelled import load
 from facegear.support.parameters import rad_per_s
 
 CASE_1 = parse_drive(example_text("case_1"))
@@ -68,6 +65,30 @@ def test_nothing_of_a_number_that_may_be_zero_is_swept_too():
 
 
 @pytest.mark.parametrize(
+    ("example", "old", "new", "key", "told"),
+    [
+        ("case_1", "damping_us: 3", "damping_us: 0", "damping_us", r"damping_us = 0 µs: "),
+        ("both_faces", "clocking: 0.5", "clocking: -0.5", "clocking", r"clocking = -0.5: "),
+    ],
+)
+def test_where_half_and_one_and_a_half_times_are_no_range_it_is_asked_for(example, old, new, key, told):
+    """Zero was swept "from 0.001 to 0", two values that nobody gave."""
+    text = example_text(example)
+    assert text.count(old) == 1
+    file = parse_drive(text.replace(old, new))
+    with pytest.raises(ValueError, match=f"^--from and --to must be given for {told}"):
+        sweep(file, key, **FEW)
+    with pytest.raises(ValueError, match=f"^--to must be given for {told}"):
+        sweep(file, key, lowest=0.0, **FEW)
+
+
+def test_half_of_zero_is_zero_where_that_is_valid():
+    file = parse_drive(example_text("case_1").replace("damping_us: 3", "damping_us: 0"))
+    found = sweep(file, "damping_us", highest=6.0, cells=2, speeds_rpm=(500.0, 600.0))
+    assert found.values.tolist() == pytest.approx([0.0, 6.0])
+
+
+@pytest.mark.parametrize(
     ("changes", "told"),
     [
         ({"key": "nosuch"}, r"parameter must be one of module_mm, .*stiffness.*, got 'nosuch'"),
@@ -93,22 +114,6 @@ def test_nothing_of_a_number_that_may_be_zero_is_swept_too():
 def test_what_cannot_be_swept(changes, told):
     with pytest.raises(ValueError, match=told):
         sweep(CASE_1, **({"key": "stiffness"} | changes))
-
-
-def test_files(tmp_path):
-    found = sweep(CASE_1, "stiffness", lowest=0.2, highest=0.8, **FEW)
-    for end, write in WRITERS.items():
-        write(found, tmp_path / f"map{end}")
-    assert sorted(path.suffix for path in tmp_path.iterdir()) == sorted(WRITERS)
-    chart = load(tmp_path / "map.nc")
-    np.testing.assert_allclose(chart["growth_rate"], found.chart["growth_rate"])
-    with (tmp_path / "map.csv").open(encoding="utf-8-sig") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == 9
-    assert list(rows[0]) == ["stiffness", "speed_rpm", "growth_rate_per_s"]
-    assert float(rows[5]["growth_rate_per_s"]) == pytest.approx(
-        columns(found)["growth_rate_per_s"][5], rel=1e-11
-    )
 
 
 def test_tolerances_are_no_numbers_of_a_model():

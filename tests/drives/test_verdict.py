@@ -208,6 +208,8 @@ class TestWords:
         finding, _ = said.findings
         assert "NOT SETTLED" in finding
         assert "NOT SETTLED in 1 of 1 cases" in said.headline
+        quiet = self.said(case("Tregold", "follower", settled=False, moved=0.0))
+        assert quiet.headline.startswith("Not shown to be safe")
         assert "NOT SETTLED" not in self.said(case("Tregold", "follower")).headline
 
     def test_teeth_that_are_too_weak_are_part_of_it(self):

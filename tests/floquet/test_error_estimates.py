@@ -57,6 +57,16 @@ def test_no_error_of_many_systems_passes_ten_times_its_estimate(kind):
     assert worst_share(kind, 2, 50) < 10.0
 
 
+def test_a_stiff_damper_is_counted_along_the_directions_that_it_leaves_alone():
+    """Two coordinates, and a damper of 2.4e5 along a direction between them, in matrices of rounded entries."""
+    rng = np.random.default_rng([2, stiff_systems.KINDS.index("contact")])
+    *_, system = (stiff_systems.random_system(rng, "contact") for _ in range(32))
+    truth = stiff_systems.multipliers(system)
+    errors = np.abs(multipliers(system, Radau())[:, None] - truth[None, :]).min(axis=1)
+    assert errors[1] > 1e-12
+    assert (errors < 5.0 * multiplier_errors(system, Radau())).all()
+
+
 def test_a_stiff_damper_is_counted():
     """Q'' + c q' + q = 0, c = 1e8: the slow multiplier is exp(-T/c (1 + ...)), known to the rounding of c T only."""
     period, c = 2.0, 1e8

@@ -5,7 +5,7 @@ import pytest
 
 from facegear.floquet.band_speeds import band_speeds
 from facegear.floquet.hsu import resonance_bands
-from facegear.floquet.labels import Combination, combination, moving_parts
+from facegear.floquet.labels import Combination, combination, growth_and_combination, moving_parts
 from facegear.floquet.loads import ContactLoad
 from facegear.floquet.models import Coordinate
 from facegear.floquet.periodic import PeriodicSystem
@@ -115,6 +115,16 @@ def test_flutter_of_the_mean_system_is_told_from_resonance():
     assert combination(unstable).label == "mean 2"
     falling = replace(built, stiffness=np.diag([-100.0, 71.0**2]))
     assert combination(falling).label == "mean 0"
+
+
+def test_flutter_under_a_mesh_too_fast_for_any_pair_is_no_divergence():
+    """It was called "mean 0". The mesh stiffens the first mode up to the second, and they flutter by a shear."""
+    built = system((30.0, 30.0), (1.0, 0.0), stiffness=600.0, mean_damping=0.001)
+    sheared = replace(built, stiffness=np.array([[892.0, 2.0], [-2.0, 900.0]]), period=TURN / 150.0)
+    growth, named = growth_and_combination(sheared)
+    assert growth > 0.02
+    assert (named.kind, named.order) == ("mean", 0)
+    assert named.k == named.j > 0
 
 
 def test_labels():

@@ -28,7 +28,7 @@ ROUTE = (
     "tests/independent/edge_load.py and complex_galerkin.py: (6-25) in complex exponentials with K_f by (6-27), all "
     "harmonics, one smooth piece of the period after the other by DOP853 at 1e-12"
 )
-BODY = replace(CASE_1, nodal_circles=1, nodal_diameters=5)
+BODY = replace(CASE_1, nodal_circles=1, nodal_diameters=7)
 POWER, POWER_SPEED = 447.42e3, rpm(5000.0)
 BEARING = reference_stiffness(CASE_1)  # μ = 1
 DAMPING = 3e-6 * BEARING
@@ -36,11 +36,13 @@ DAMPING = 3e-6 * BEARING
 THRESHOLD = 1e-8
 # Number of a tongue, which border, and a bracket of it [rpm].
 BRACKETS = (
-    (0, "lower", (113.5, 114.5)),
-    (0, "upper", (118.0, 119.0)),
-    (1, "lower", (122.0, 123.0)),
-    (1, "upper", (422.5, 424.0)),
-    (2, "lower", (431.0, 432.5)),
+    (0, "lower", (113.4, 114.0)),
+    (0, "upper", (118.0, 118.6)),
+    (1, "lower", (122.7, 123.3)),
+    (1, "upper", (124.7, 125.3)),
+    (2, "lower", (127.0, 127.6)),
+    (2, "upper", (422.2, 423.0)),
+    (3, "lower", (432.2, 433.0)),
 )
 
 

@@ -78,7 +78,7 @@ def shafts_study(model: HeavyShafts | None = None, highest_speed_rpm: float = 10
     controls = (
         parameter_control(start, "input_length", "length of the input shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
         parameter_control(start, "output_length", "length of the output shaft [mm]", 50.0, 1000.0, 5.0, 1e-3),
-        Quantity("modes", "modes of each shaft", 0, 3, start.modes, 1, whole=True),
+        Quantity("modes", "modes of each shaft", 0, 3, max(start.modes_of_each), 1, whole=True),
         *_springs_and_dampers(start),
     )
 
