@@ -300,7 +300,7 @@ class _Found:
         return Assessment(
             file=self.file,
             outcomes=outcomes,
-            torsion={name: found.tongues for name, found in torsion.items()},
+            torsion=torsion,
             worst={
                 name: self.found["worst", name]
                 for name in (*FORCES.values(), TORSION)
@@ -310,7 +310,6 @@ class _Found:
             change=change,
             left_out=tuple(dict.fromkeys(refused)),
             failed=tuple(failed),
-            settled_torsion=torsion,
             disk_responses=tuple(
                 self.found["disk", which] for which in order if ("disk", which) in self.found
             ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import xarray as xr
@@ -48,9 +48,9 @@ class Assessment:
     file : DriveFile
     outcomes : tuple of Outcome
         The file's own contact and teeth first.
-    torsion : dict of str to tuple of Tongue
+    torsion : dict of str to SettledTorsion
         Tongues in torsion under each contact and each arm of the mesh force, the file's own first, over the range of
-        speed with its tolerance; empty where the file has no gearbox.
+        speed with its tolerance, and whether the modes of its shafts suffice; empty where the file has no gearbox.
     worst : dict of str to WorstCase
         Of the file's own contact and teeth, by the direction of the force, and of its gearbox in "torsion"; empty where
         the file has no tolerances.
@@ -65,20 +65,17 @@ class Assessment:
         Forced response of the disk in each model of the file's own contact, or why there is none.
     failed : tuple of str
         Models of the disk's motion that could not be computed, and why: what they come to is not known.
-    settled_torsion : dict of str to SettledTorsion
-        How many modes the shafts have where the tongues of `torsion` were found, and whether these suffice.
     """
 
     file: DriveFile
     outcomes: tuple[Outcome, ...]
-    torsion: dict[str, tuple[Tongue, ...]]
+    torsion: dict[str, SettledTorsion]
     worst: dict[str, WorstCase]
     response: xr.Dataset | None
     change: str
     left_out: tuple[str, ...]
     disk_responses: tuple[DiskResponse, ...] = ()
     failed: tuple[str, ...] = ()
-    settled_torsion: dict[str, SettledTorsion] = field(default_factory=dict)
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -90,13 +87,13 @@ class Assessment:
         """One of "safe under all", "unstable under all", "depends": models, and values in their tolerances."""
         disk = [outcome.is_stable for outcome in self.outcomes]
         # Beyond the operating speeds, in their tolerance, a drive need not run.
-        torsion = [not self._operating(found) for found in self.torsion.values()] or [True]
+        torsion = [not self._operating(found) for found in self._in_torsion] or [True]
         if self.failed:
             return DEPENDS if any(torsion) else UNSTABLE
         if (
             all(disk)
             and not self.open_models
-            and not any(self.torsion.values())
+            and not any(self._in_torsion)
             and not self.open_torsion
             and all(case.is_stable for case in self.worst.values())
         ):
@@ -117,7 +114,7 @@ class Assessment:
             if any(len(kinds) == 2 for kinds in seen.values()):
                 found.append(words)
         nominal = {o.variant.force: o.is_stable for o in reversed(self.outcomes) if self._is_own(o)}
-        own = next(iter(self.torsion.values()), ())
+        own = next(iter(self._in_torsion), ())
         nominal[TORSION] = not self._operating(own)
         given = self.file.tolerances
         turned = [
@@ -126,7 +123,7 @@ class Assessment:
             if nominal.get(force) and not case.is_stable
         ]
         found += dict.fromkeys(turned + [SPEED_TURNS] * (nominal[TORSION] and bool(own)))
-        if len({bool(self._operating(tongues)) for tongues in self.torsion.values()}) == 2:
+        if len({bool(self._operating(tongues)) for tongues in self._in_torsion}) == 2:
             found.append("the contact or the arm of the mesh force in torsion")
         if self.open_torsion:
             found.append("more modes of a shaft in torsion")
@@ -144,7 +141,12 @@ class Assessment:
     @property
     def open_torsion(self) -> int:
         """Number of models of torsion that have not settled: more modes of a shaft may turn them."""
-        return sum(not found.settled for found in self.settled_torsion.values())
+        return sum(not found.settled for found in self.torsion.values())
+
+    @property
+    def _in_torsion(self) -> list[tuple[Tongue, ...]]:
+        """Tongues of each model of torsion."""
+        return [found.tongues for found in self.torsion.values()]
 
     def _operating(self, found: Sequence[Tongue]) -> Intervals:
         """Where tongues stand in the operating range, without its tolerance."""
@@ -162,7 +164,7 @@ class Assessment:
             stable = [gap for found in family for gap in gaps(_intervals(found), self.speeds)]
             return gaps(united(stable), self.speeds) if family else ()
 
-        return united([*in_all([o.tongues for o in self.outcomes]), *in_all([*self.torsion.values()])])
+        return united([*in_all([o.tongues for o in self.outcomes]), *in_all(self._in_torsion)])
 
     @cached_property
     def always_stable(self) -> Intervals:
@@ -173,7 +175,7 @@ class Assessment:
         every = [interval for o in self.outcomes for interval in _intervals(o.tongues)]
         # Where it is not known, nothing is known to be stable.
         every += [interval for case in self.worst.values() for interval in case.possible]
-        every += [interval for found in self.torsion.values() for interval in _intervals(found)]
+        every += [interval for found in self._in_torsion for interval in _intervals(found)]
         return gaps(united(every), self.speeds)
 
     @property
@@ -245,7 +247,7 @@ class Assessment:
         """How many models of torsion are stable, as the headline has it; empty without any."""
         if not self.torsion:
             return ""
-        count, still = len(self.torsion), sum(not found for found in self.torsion.values())
+        count, still = len(self.torsion), sum(not found for found in self._in_torsion)
         where = " in the range with its tolerance" if self.file.tolerances.speed else ""
         if not still:
             each = f"Each of the {count} models" if count > 1 else "The one model"
@@ -256,7 +258,7 @@ class Assessment:
     def mechanism(self) -> str:
         """What grows fastest of all models, and at values in their tolerances, and how."""
         unstable = [(o.variant.name, tongue) for o in self.outcomes for tongue in o.tongues]
-        unstable += [(f"torsion; {name}", t) for name, found in self.torsion.items() for t in found]
+        unstable += [(f"torsion; {name}", t) for name, found in self.torsion.items() for t in found.tongues]
         for name, case in self.worst.items():
             if case.fastest is not None:
                 factors, tongue = case.fastest
@@ -334,9 +336,7 @@ class Assessment:
     def table(self) -> xr.Dataset:
         """All models and what they come to, as arrays (:func:`facegear.drives.assessment_table.model_table`)."""
         wide = self.file.tolerances.widened(self.speeds)
-        return model_table(
-            self.outcomes, self.torsion, self.settled_torsion, self.speeds, wide, self._parameters
-        )
+        return model_table(self.outcomes, self.torsion, self.speeds, wide, self._parameters)
 
 
 def _intervals(found: Sequence[Tongue]) -> Intervals:

@@ -109,7 +109,7 @@ def _models(found: Assessment) -> Section:
         group[outcome.variant.teeth] = _in_rpm([(tongue.lower, tongue.upper) for tongue in outcome.tongues])
     if found.torsion:
         groups["torsion"] = {
-            name: _in_rpm([(tongue.lower, tongue.upper) for tongue in part])
+            name: _in_rpm([(tongue.lower, tongue.upper) for tongue in part.tongues])
             for name, part in found.torsion.items()
         }
     low, high = found.speeds
@@ -158,15 +158,15 @@ def _model_rows(found: Assessment) -> tuple[tuple[str, ...], ...]:
     if found.file.tolerances.speed:
         motion += f", {rpm(wide[0]):.4g} to {rpm(wide[1]):.4g} rpm"
     torsion = (
-        (motion, name, "", "", *_what_grows(tongues, wide), *_shafts(found.settled_torsion.get(name)))
-        for name, tongues in found.torsion.items()
+        (motion, name, "", "", *_what_grows(part.tongues, wide), *_shafts(part))
+        for name, part in found.torsion.items()
     )
     return (*disk, *torsion)
 
 
-def _shafts(found: SettledTorsion | None) -> tuple[str, str]:
+def _shafts(found: SettledTorsion) -> tuple[str, str]:
     """Modes of shafts with mass, and whether they suffice."""
-    return ("", "") if found is None or not found.modes else (found.modes, _settled(found))
+    return (found.modes, _settled(found)) if found.modes else ("", "")
 
 
 def _settled(outcome: Outcome | SettledTorsion) -> str:

@@ -48,17 +48,16 @@ def _row(outcome: Outcome, speeds: tuple[float, float]) -> _Row:
     return _Row(*names, outcome.tongues, speeds, float(outcome.settled), *basis, outcome.growth_moved)
 
 
-def _whether_settled(found: SettledTorsion | None) -> tuple[float, float, float, float]:
+def _whether_settled(found: SettledTorsion) -> tuple[float, float, float, float]:
     """Whether modes of shafts suffice, no disk, and by how much growth has moved; NaN where there are no modes."""
-    if found is None or not found.modes:
+    if not found.modes:
         return (math.nan,) * 4
     return float(found.settled), math.nan, math.nan, found.growth_moved
 
 
 def model_table(
     outcomes: Sequence[Outcome],
-    torsion: Mapping[str, Sequence[Tongue]],
-    shafts: Mapping[str, SettledTorsion],
+    torsion: Mapping[str, SettledTorsion],
     speeds: tuple[float, float],
     wide: tuple[float, float],
     parameters: str,
@@ -69,10 +68,8 @@ def model_table(
     ----------
     outcomes : sequence of Outcome
         Of the disk's motion.
-    torsion : mapping of str to sequence of Tongue
+    torsion : mapping of str to SettledTorsion
         By contact and arm.
-    shafts : mapping of str to SettledTorsion
-        By the same names, whether the modes of shafts suffice.
     speeds, wide : tuple of float
         Range looked at for the disk, and in torsion [rad/s].
     parameters : str
@@ -88,7 +85,7 @@ def model_table(
     """
     rows = [_row(outcome, speeds) for outcome in outcomes]
     rows += [
-        _Row(TORSION, name, "", "", found, wide, *_whether_settled(shafts.get(name)))
+        _Row(TORSION, name, "", "", found.tongues, wide, *_whether_settled(found))
         for name, found in torsion.items()
     ]
     fastest = [row.fastest for row in rows]

@@ -35,14 +35,15 @@ from facegear.support.types import FloatArray
 _WIDE = 1.5
 # Speeds at which growth is tried in a part of a tongue without its peak.
 _TRIED = 17
-# Part by which the largest growth rate may differ from one basis to the next where all of a narrow range is unstable.
-_GROWTH_MOVED = 0.1
 # Part by which a wide range without a tongue is looked at beyond its ends.
 _BESIDE = 1.1
 # A border outside the range may come nearer by so many times what it moved from one basis to the next.
 _ONWARD = 2.0
 # Growth in a period from which a speed counts as unstable in a basis whose multipliers are known less well.
 _ROUGH = 1e-7
+
+GROWTH_MOVED = 0.1
+"""Part by which the largest growth rate may differ from one basis to the next where all of a range is unstable."""
 
 
 def with_basis(model: FaceGears, nodal_circles: int, nodal_diameters: int) -> FaceGears:
@@ -143,6 +144,12 @@ def unstable_share(found: Sequence[Tongue], speeds: tuple[float, float]) -> floa
     return sum(tongue.width for tongue in found) / (high - low)
 
 
+def growth_moved(before: Sequence[Tongue], found: Sequence[Tongue]) -> float:
+    """Part by which the largest growth rate differs in tongues found before; NaN where one has none."""
+    was, now = (max((tongue.growth_rate for tongue in each), default=math.nan) for each in (before, found))
+    return abs(was / now - 1.0)
+
+
 def disagreement(first: Sequence[Tongue], second: Sequence[Tongue], speeds: tuple[float, float]) -> float:
     """Part of a range of speed in which only one of two sets of tongues is unstable, 0 to 1.
 
@@ -230,14 +237,14 @@ class SettledTongues:
     @property
     def growth_moved(self) -> float:
         """Part by which the largest growth rate differs in the basis before; NaN where it is not known."""
-        rates = [max((t.growth_rate for t in step.tongues), default=math.nan) for step in self.steps[-2:]]
-        return abs(rates[0] / rates[1] - 1.0) if len(rates) == 2 else math.nan
+        *_, before, last = ((), *(step.tongues for step in self.steps))
+        return growth_moved(before, last)
 
     @property
     def may_open(self) -> bool:
         """Whether all of a narrow range is unstable, by a growth that still moves: a gap may open in a tongue."""
         return (
-            _is_narrow(self.speeds) and self.unstable_share == 1.0 and not self.growth_moved <= _GROWTH_MOVED
+            _is_narrow(self.speeds) and self.unstable_share == 1.0 and not self.growth_moved <= GROWTH_MOVED
         )
 
 

@@ -44,28 +44,22 @@ def _readable(value: float) -> str:
 
 def verdict(found: Findings) -> Section:
     """Say whether the drive is safe, and what would help."""
-    said = verdict_of(found.file, found.cases, found.tongues.get(TORSION))
+    said = verdict_of(found.file, found.cases, None if found.torsional_failure else found.settled_torsion)
     unstable = any(found.tongues.values())
-    torsion = None if found.torsional_failure else found.settled_torsion
-    headline, findings = said.headline, said.findings
-    if torsion is not None and torsion.basis:
-        findings = (*findings, torsion.basis)
-    if in_doubt := torsion is not None and not torsion.settled:
-        headline += " NOT SETTLED in torsion: more modes of a shaft may change it."
     parts: list[Part] = [
         Paragraph(f"{found.file.name}.", strong=True),
-        Paragraph(headline, "bad" if unstable or in_doubt else "good", strong=True),
-        Listing(findings),
+        Paragraph(said.headline, "bad" if unstable or said.in_doubt else "good", strong=True),
+        Listing(said.findings),
     ]
     if found.torsional_failure:
         parts.append(
             Paragraph(f"Torsion is left out, it could not be computed: {found.torsional_failure}", "bad")
         )
-    if not unstable:
-        parts += [] if in_doubt else [Paragraph(NOTHING_TO_CHANGE)]
-    else:
+    if unstable:
         advice = [sentence for advise in _ADVICE for sentence in _tried(advise, found)]
         parts.append(Paragraph(" ".join(advice)))
+    elif not said.in_doubt:
+        parts.append(Paragraph(NOTHING_TO_CHANGE))
     parts += [
         Paragraph(said.left_out, "bad"),
         Paragraph(

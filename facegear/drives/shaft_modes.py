@@ -15,7 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from facegear.drives.basis import disagreement, traced, unstable_share, within
+from facegear.drives.basis import (
+    GROWTH_MOVED,
+    disagreement,
+    growth_moved,
+    traced,
+    unstable_share,
+    within,
+)
 from facegear.maps.tracing import Tongue
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.rods import MOST_MODES, shear_wave_speed
@@ -30,8 +37,6 @@ _SHORT = 1.0 / 16.0
 _MOST_STEPS = 4
 # Part by which tongues are looked for beyond a range, to see what may come in.
 _BESIDE = 1.05
-# Part by which the largest growth rate may move where all of a range is unstable.
-_GROWTH_MOVED = 0.1
 # Rounding of a share of the speeds.
 _ALL = 1.0 - 1e-9
 # Part by which a natural frequency may be wrong that is told: three digits of it are right. And most digits told.
@@ -116,7 +121,7 @@ class SettledTorsion:
     def modes(self) -> str:
         """Modes of the shafts in words; empty if they are massless."""
         counts = zip(("input", "output"), modes_of(self.model), strict=True)
-        return ", ".join(f"{_counted(count)} of the {shaft} shaft" for shaft, count in counts if count)
+        return ", ".join(f"{counted(count, 'mode')} of the {shaft} shaft" for shaft, count in counts if count)
 
     @property
     def basis(self) -> str:
@@ -129,8 +134,9 @@ class SettledTorsion:
         return f"Shafts in torsion: {self.modes}; {half}{'' if self.settled else ', NOT SETTLED'}."
 
 
-def _counted(number: int) -> str:
-    return f"{number} mode{'' if number == 1 else 's'}"
+def counted(number: int, what: str) -> str:
+    """Write a number of things that take an s."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def settled_torsion(torsional: Any, speeds: tuple[float, float], tolerance: float = 0.02) -> SettledTorsion:
@@ -178,11 +184,11 @@ def settled_torsion(torsional: Any, speeds: tuple[float, float], tolerance: floa
         if before is None or last is None:
             last = SettledTorsion(model, speeds, here, settled=False)
         else:
-            moved, faster = disagreement(last.tongues, here, speeds), _growth_moved(last.tongues, here)
+            moved, faster = disagreement(last.tongues, here, speeds), growth_moved(last.tongues, here)
             agree = (
                 moved <= tolerance
                 and bool(last.tongues) == bool(here)
-                and not (unstable_share(here, speeds) >= _ALL and not faster <= _GROWTH_MOVED)
+                and not (unstable_share(here, speeds) >= _ALL and not faster <= GROWTH_MOVED)
                 and not _comes_in(before, around, wider, speeds)
             )
             covered = all(have >= need for have, need in zip(modes, asked, strict=True))
@@ -202,11 +208,6 @@ def _tried(own: tuple[int, int]) -> list[tuple[int, int]]:
         first, second = (min(2 * number, MOST_MODES) for number in tried[-1])
         tried.append((first, second))
     return list(dict.fromkeys(tried))
-
-
-def _growth_moved(before: Sequence[Tongue], found: Sequence[Tongue]) -> float:
-    rates = [max((tongue.growth_rate for tongue in each), default=math.nan) for each in (before, found)]
-    return abs(rates[0] / rates[1] - 1.0)
 
 
 def _comes_in(

@@ -19,6 +19,7 @@ from facegear.drives.drive_file import DriveFile
 from facegear.drives.flexible_teeth import CENTROID
 from facegear.drives.forces import in_words, pressed
 from facegear.drives.intervals import in_rpm
+from facegear.drives.shaft_modes import SettledTorsion, counted
 from facegear.floquet.modes import mean_growth_rate
 from facegear.maps.parallel import each_in_processes
 from facegear.maps.tracing import Tongue
@@ -139,14 +140,17 @@ class Verdict:
         One sentence a case: at which speeds, by which mechanism, in which basis.
     left_out : str
         What none of this includes.
+    in_doubt : bool
+        Whether a case or torsion has not settled: what is stable may not be.
     """
 
     headline: str
     findings: tuple[str, ...]
     left_out: str
+    in_doubt: bool
 
 
-def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongue] | None) -> Verdict:
+def verdict(file: DriveFile, computed: Sequence[Case], torsion: SettledTorsion | None) -> Verdict:
     """Say whether a drive is safe.
 
     Parameters
@@ -154,8 +158,8 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
     file : DriveFile
     computed : sequence of Case
         From :func:`cases`.
-    torsional : sequence of Tongue, optional
-        Tongues of the gearbox, if the file has one.
+    torsion : SettledTorsion, optional
+        The gearbox, if the file has one.
 
     Returns
     -------
@@ -185,6 +189,7 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
         headline = (
             f"Stable at all speeds {where}, under both contact ratios and both directions of the force."
         )
+    torsional = None if torsion is None else torsion.tongues
     if torsional and not unstable:
         headline = f"Not safe: in torsion unstable at some speeds. Of the disk's motion: {headline}"
     elif torsional:
@@ -206,7 +211,13 @@ def verdict(file: DriveFile, computed: Sequence[Case], torsional: Sequence[Tongu
         findings.append(f"Torsion: {spoken}{_resonances(torsional)}.")
     findings += [f"Cannot be built as a solid shaft: {sentence}." for sentence in file.not_buildable]
     findings.append(f"Strength: {strength}.")
-    return Verdict(headline, tuple(findings), _left_out(file))
+    in_doubt = open_cases > 0
+    if torsion is not None and torsion.basis:
+        findings.append(torsion.basis)
+    if torsion is not None and not torsion.settled:
+        headline += " NOT SETTLED in torsion: more modes of a shaft may change it."
+        in_doubt = True
+    return Verdict(headline, tuple(findings), _left_out(file), in_doubt)
 
 
 def _what_decides(computed: Sequence[Case]) -> str:
@@ -222,7 +233,9 @@ def _finding(case: Case) -> str:
     """Say at which speeds a case is unstable, by which mechanism, in which basis."""
     found = case.found
     last = found.steps[-1]
-    basis = f"{_counted(last.nodal_circles, 'nodal circle')} and {_counted(last.nodal_diameters, 'nodal diameter')}"
+    basis = (
+        f"{counted(last.nodal_circles, 'nodal circle')} and {counted(last.nodal_diameters, 'nodal diameter')}"
+    )
     if len(found.steps) == 1:
         sure = f"{basis}; no larger basis was tried"
     else:
@@ -238,10 +251,6 @@ def _finding(case: Case) -> str:
     else:
         cause = _resonances(found.tongues)
     return f"{case.name[0].upper()}{case.name[1:]}: {spoken}{cause} ({sure})."
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _speeds(found: Sequence[Tongue], speeds: tuple[float, float]) -> str:

@@ -4,6 +4,7 @@ import pytest
 
 from facegear.drives.assessment_columns import model_columns
 from facegear.drives.assessment_table import model_table
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.floquet.labels import Combination
 from facegear.maps.tracing import Tongue
 from facegear.support.parameters import rad_per_s, rpm
@@ -14,7 +15,11 @@ from tests.drives.drive_files import rows
 def test_numbers_of_models_have_the_units_of_other_tables_and_none_is_an_empty_cell(tmp_path):
     found = Tongue(*rad_per_s([95.0, 97.0, 96.0]).tolist(), 90.0, Combination(1, 8, "sum", 1))
     speeds = (float(rad_per_s(100.0)), float(rad_per_s(1000.0)))
-    table = model_table([], {"unstable": (found,), "stable": ()}, {}, speeds, speeds, "of a test")
+    torsion = {
+        name: SettledTorsion(None, speeds, tongues, settled=True)
+        for name, tongues in (("unstable", (found,)), ("stable", ()))
+    }
+    table = model_table([], torsion, speeds, speeds, "of a test")
     unstable, stable = rows(write_table(model_columns(table), tmp_path / "models.csv"))
     assert float(unstable["fastest_speed_rpm"]) == pytest.approx(96.0, rel=1e-11)
     assert float(unstable["largest_growth_per_s"]) == 90.0

@@ -11,6 +11,7 @@ from facegear.drives import verdict
 from facegear.drives.basis import BasisStep, SettledTongues
 from facegear.drives.drive_file import read_drive_file
 from facegear.drives.forces import PLACES
+from facegear.drives.shaft_modes import SettledTorsion
 from facegear.drives.tolerances import Tolerances
 from facegear.floquet.labels import Combination
 from facegear.floquet.modes import mean_growth_rate
@@ -138,7 +139,8 @@ class TestWords:
     FILE = replace(CASE_1, requirements=replace(CASE_1.requirements, speeds=RANGE))
 
     def said(self, *computed, torsional=None):
-        return verdict.verdict(self.FILE, computed, torsional)
+        torsion = None if torsional is None else SettledTorsion(None, RANGE, torsional, settled=True)
+        return verdict.verdict(self.FILE, computed, torsion)
 
     @pytest.mark.parametrize(
         ("unstable", "words"),
@@ -179,7 +181,8 @@ class TestWords:
     def test_shafts_that_cannot_be_built_are_among_the_findings(self):
         box = read_drive_file(DRIVES / "gearbox_table_7_1.yaml")
         file = replace(box, torsional=HeavyShafts(box.torsional, 0.5, 0.5))
-        found = verdict.verdict(file, [case("Tregold", "follower")], ()).findings
+        torsion = SettledTorsion(file.torsional, RANGE, (), settled=True)
+        found = verdict.verdict(file, [case("Tregold", "follower")], torsion).findings
         (sentence,) = [finding for finding in found if "built" in finding]
         assert sentence.startswith(
             "Cannot be built as a solid shaft: input shaft of 98.4 mm diameter is thicker"
@@ -210,6 +213,9 @@ class TestWords:
         assert "NOT SETTLED in 1 of 1 cases" in said.headline
         quiet = self.said(case("Tregold", "follower", settled=False, moved=0.0))
         assert quiet.headline.startswith("Not shown to be safe")
+        # A page then says neither that it is good nor that nothing has to change.
+        assert quiet.in_doubt
+        assert not self.said(case("Tregold", "follower")).in_doubt
         assert "NOT SETTLED" not in self.said(case("Tregold", "follower")).headline
 
     def test_teeth_that_are_too_weak_are_part_of_it(self):
