@@ -3,8 +3,9 @@
 Values of stiffness are not drawn. Their box is divided into cells, and tongues are traced at the corners of each, for
 both ends of every damping. Natural frequencies rise with every stiffness, and so a tongue that stands at all corners of
 a cell has swept all speeds between. A tongue can also stand at some corners only, or inside the cell alone, where a
-resonance is better tuned. So at each corner a drive with half the damping is looked at as well: what could open nearby
-stands there already, and where it does the cell is halved until it is small. What cannot be told then is left open.
+resonance is better tuned. So where no tongue has been seen a drive with half the damping is looked at as well, at each
+corner: what could open nearby stands there already, and where it does the cell is halved until it is small. What cannot
+be told then is left open.
 Tongues are looked for in a wider range of speed, wide enough that none can come into the range from outside unseen.
 """
 
@@ -107,27 +108,22 @@ class Cell:
 class _Corner:
     """What stands in a range of speed at one value of each stiffness.
 
-    Tongues by the factors of stiffness and damping, one for each corner of the dampings; of these the ones with the
-    least damping; and those that stand with half of that alone.
+    Tongues by the factors of stiffness and damping, one for each corner of the dampings, and of these the ones with the
+    least damping.
     """
 
+    springs: Factors
     around: Range
     found: dict[Factors, tuple[Tongue, ...]]
     least: tuple[Tongue, ...]
-    weak: tuple[Tongue, ...]
 
 
 @dataclass(frozen=True)
 class _Judged:
-    """What corners tell of a cell: intervals of speed [rad/s].
-
-    Such as are swept, and those that a tongue may reach which stands at some corners only, or at one of them with half
-    the damping alone.
-    """
+    """What corners tell of a cell: intervals of speed [rad/s] that are swept, and that tongues of some may reach."""
 
     swept: list[Range]
     open: list[Range]
-    weak: list[Range]
 
 
 @dataclass
@@ -163,6 +159,7 @@ class BoxSearch:
     possible: list[Range] = field(default_factory=list)
     _seconds: float = 0.0
     _corners: dict[Factors, list[_Corner]] = field(default_factory=dict)
+    _weakly: dict[tuple[Factors, float], list[tuple[Range, tuple[Tongue, ...]]]] = field(default_factory=dict)
     _traced: dict[Factors, tuple[Range, tuple[Tongue, ...]]] = field(default_factory=dict)
 
     def run(self) -> None:
@@ -175,8 +172,16 @@ class BoxSearch:
         self.looked_at[nominal] = (self.wide,)
         self.swept += [(tongue.lower, tongue.upper) for tongue in own]
         self.possible += self.swept
-        for springs in sorted({corner for cell in cells for corner in cell.corners}):
+        shared = [
             self._corner(springs, widest)
+            for springs in sorted({corner for cell in cells for corner in cell.corners})
+        ]
+        for cell in cells:
+            self._sweep(cell)
+        if unswept := [around for cell in cells if (around := self._unswept(cell)) is not None]:
+            lowest, highest = min(low for low, _ in unswept), max(high for _, high in unswept)
+            for corner in shared:
+                self._weak(corner, (lowest, highest), HALF)
         finer = [half for cell in cells for half in self._halves(cell)]
         self._seconds = 0.0
         # The largest first: what is left at the end is small.
@@ -235,28 +240,54 @@ class BoxSearch:
 
     def _halves(self, cell: Cell) -> list[Cell]:
         """Look at a cell, keep what it tells, and return halves where they could tell more."""
-        corners = [self._corner(springs, cell.around) for springs in cell.corners]
-        judged = _judged(cell, corners)
+        unsettled, corners = self._sweep(cell).open, self._at(cell)
+        # What stands with half the damping alone is asked only where nothing stands in any case.
+        if (around := self._unswept(cell)) is not None:
+            weak = [self._weak(corner, around, HALF) for corner in corners]
+            unsettled += (
+                self._left(cell, around, corners, weak)
+                if cell.is_fine
+                else [cell.reached(tongue) for each in weak for tongue in each]
+            )
+        if cell.is_fine:
+            self.possible += unsettled
+            return []
+        return [
+            half
+            for speeds in cut(united(unsettled), cell.speeds)
+            for half in replace(cell, speeds=speeds).halves(cell.longest)
+        ]
+
+    def _at(self, cell: Cell) -> list[_Corner]:
+        """Look at all corners of a cell."""
+        return [self._corner(springs, cell.around) for springs in cell.corners]
+
+    def _sweep(self, cell: Cell) -> _Judged:
+        """Keep what tongues at the corners of a cell have swept."""
+        judged = _judged(cell, self._at(cell))
         self.swept += judged.swept
         self.possible += judged.swept
-        if cell.is_fine:
-            self.possible += [*judged.open, *self._left(cell, corners)]
-            return []
-        unsettled = cut(united([*judged.open, *judged.weak]), cell.speeds)
-        return [half for speeds in unsettled for half in replace(cell, speeds=speeds).halves(cell.longest)]
+        return judged
 
-    def _left(self, cell: Cell, corners: Sequence[_Corner]) -> list[Range]:
-        """Where something may open inside a fine cell that stands at no corner of it."""
-        if cell.reach == 1.0:
-            return []
+    def _unswept(self, cell: Cell) -> Range | None:
+        """Speeds from which a tongue can come into those of a cell that nothing has swept; None if all are swept."""
+        left = gaps(united(self.swept), cell.speeds)
+        if not left or cell.reach == 1.0:
+            return None
+        return replace(cell, speeds=(left[0][0], left[-1][1])).around
+
+    def _left(
+        self, cell: Cell, around: Range, corners: Sequence[_Corner], weak: Sequence[Sequence[Tongue]]
+    ) -> list[Range]:
+        """Where something may open inside a fine cell that stands at its corners with half the damping alone."""
         found: list[Range] = []
-        for springs, corner in zip(cell.corners, corners, strict=True):
-            if any(cut([cell.reached(tongue)], cell.speeds) for tongue in corner.weak):
-                found += map(cell.reached, self._weak(springs, cell.around, corner.least, MOST))
-        weak = {tongue.label for corner in corners for tongue in corner.weak}
-        places = _places(cell, [(*corner.least, *corner.weak) for corner in corners])
+        for corner, each in zip(corners, weak, strict=True):
+            if any(cut([cell.reached(tongue)], cell.speeds) for tongue in each):
+                found += map(cell.reached, self._weak(corner, around, MOST))
+        labels = {tongue.label for each in weak for tongue in each}
+        places = _places(cell, [(*corner.least, *each) for corner, each in zip(corners, weak, strict=True)])
         for one, other in combinations(places, 2):
-            if {one, other} & weak and len(united([places[one], places[other]])) == 1:
+            if {one, other} & labels and len(united([places[one], places[other]])) == 1:
                 found += [places[one], places[other]]
         return found
 
@@ -264,7 +295,7 @@ class BoxSearch:
         """Look at a corner, if that has not been done."""
         seen = self._corners.setdefault(springs, [])
         for corner in seen:
-            if corner.around[0] <= around[0] and around[1] <= corner.around[1]:
+            if _holds(corner.around, around):
                 return corner
         low, high = self._ends(is_damping)
         dampings = product(*(sorted({*ends}) for ends in zip(low, high, strict=True)))
@@ -272,20 +303,22 @@ class BoxSearch:
             factors: self._tongues(factors, around)
             for factors in (self._factors(springs, each) for each in dampings)
         }
-        least = found[self._factors(springs, low)]
-        corner = _Corner(around, found, least, self._weak(springs, around, least, HALF))
+        corner = _Corner(springs, around, found, found[self._factors(springs, low)])
         seen.append(corner)
         for factors, here in found.items():
             self._keep(factors, here, around)
         return corner
 
-    def _weak(
-        self, springs: Factors, around: Range, least: Sequence[Tongue], part: float
-    ) -> tuple[Tongue, ...]:
+    def _weak(self, corner: _Corner, around: Range, part: float) -> tuple[Tongue, ...]:
         """Tongues with a part of the least damping, without those that stand with all of it."""
+        seen = self._weakly.setdefault((corner.springs, part), [])
+        for known, found in seen:
+            if _holds(known, around):
+                return found
         low, _ = self._ends(is_damping)
-        found = self._tongues(self._factors(springs, tuple(part * each for each in low)), around)
-        return _apart(found, least)
+        with_part = self._tongues(self._factors(corner.springs, tuple(part * each for each in low)), around)
+        seen.append((around, _apart(with_part, corner.least)))
+        return seen[-1][1]
 
     def _keep(self, factors: Factors, found: tuple[Tongue, ...], around: Range) -> None:
         """Keep tongues of some factors, of a part of the range such as it does not cut, and what was looked at."""
@@ -334,7 +367,7 @@ def is_damping(words: str) -> bool:
 
 def _judged(cell: Cell, corners: Sequence[_Corner]) -> _Judged:
     """Say what tongues at the corners of a cell tell of its speeds."""
-    found = _Judged([], [], [])
+    found = _Judged([], [])
     for at_corners in zip(*(corner.found.values() for corner in corners), strict=True):
         everywhere = _everywhere(at_corners)
         for label, place in _places(cell, at_corners).items():
@@ -347,9 +380,12 @@ def _judged(cell: Cell, corners: Sequence[_Corner]) -> _Judged:
         found.swept.extend(
             (t.lower, t.upper) for each in at_corners for t in each if t.label not in everywhere
         )
-    if cell.reach > 1.0:
-        found.weak.extend(cell.reached(tongue) for corner in corners for tongue in corner.weak)
     return found
+
+
+def _holds(one: Range, other: Range) -> bool:
+    """Whether a range has another one in it."""
+    return one[0] <= other[0] and other[1] <= one[1]
 
 
 def _stands(tongue: Tongue, speeds: Range) -> bool:

@@ -127,10 +127,11 @@ def test_two_that_are_weak_alone_and_meet_inside_a_fine_cell_are_left_open():
     """Their strengths may add where they share a mode; apart, both are far from open."""
     cell = Cell((1.0,), (1.02,), (1.0, 2.0))
     search = BoxSearch(Tuned(0.0), {"stiffness": 0.02, "damping": 0.0}, (1.0, 2.0))
-    meeting = [corner(tongue(1.500, "a"), tongue(1.505, "b")), corner(tongue(1.512, "a"), tongue(1.507, "b"))]
-    assert len(united(search._left(cell, meeting))) == 1
-    apart = [corner(tongue(1.500, "a"), tongue(1.520, "b")), corner(tongue(1.512, "a"), tongue(1.530, "b"))]
-    assert search._left(cell, apart) == []
+    corners = [module._Corner(springs, (0.5, 3.0), {}, ()) for springs in cell.corners]
+    meeting = [(tongue(1.500, "a"), tongue(1.505, "b")), (tongue(1.512, "a"), tongue(1.507, "b"))]
+    assert len(united(search._left(cell, cell.around, corners, meeting))) == 1
+    apart = [(tongue(1.500, "a"), tongue(1.520, "b")), (tongue(1.512, "a"), tongue(1.530, "b"))]
+    assert search._left(cell, cell.around, corners, apart) == []
 
 
 def tongue(at, label):
@@ -144,8 +145,15 @@ class Labelled:
     label: str
 
 
-def corner(*weak):
-    return module._Corner((0.5, 3.0), {}, (), weak)
+def test_half_the_damping_is_looked_at_only_where_nothing_stands_in_any_case():
+    """All corners of the first cells are unstable around 2, and nothing else is within their reach."""
+    search = searched(Tuned(peak=3.0, width=1.0), speeds=(1.99, 2.01))[0]
+    assert search._weakly == {}
+    partly = searched(Tuned(peak=3.0, width=1.0), speeds=(2.0, 2.3))[0]
+    looked_at = [around for found in partly._weakly.values() for around, _ in found]
+    upper = max(stop for _, stop in partly.swept)
+    assert looked_at
+    assert all(2.0 < low < upper < 2.3 < high for low, high in looked_at)
 
 
 @pytest.mark.parametrize("part", [0.1, 0.4])
