@@ -32,7 +32,7 @@ from facegear.drives.findings import TORSION, best_change
 from facegear.drives.outcome import Outcome
 from facegear.drives.refusals import told
 from facegear.drives.report_arrays import describe
-from facegear.drives.shaft_modes import settled_torsion
+from facegear.drives.shaft_modes import SettledTorsion, modes_of, settled_torsion
 from facegear.drives.tolerances import Tolerances
 from facegear.drives.variants import (
     Variant,
@@ -160,12 +160,10 @@ class _Found:
         self._add_case(crew, 0, self.cases[0], *known)
         for number, case in enumerate(self.cases[2:], 2):
             self._add_case(crew, number, case)
-        for name, work in self.torsion.items():
-            crew.add(("torsion", name), 0.0, settled_torsion, *work, self.tolerance)
-        if (torsional := self.file.torsional) is not None:
-            crew.add(("response", ""), 0.0, _response, self.file, torsional)
-            if self.file.tolerances.given_in_torsion:
-                self._add_worst(crew, TORSION, worst_case_in_torsion, torsional)
+        for number, (name, work) in enumerate(self.torsion.items()):
+            # More follows from the first, which is the file's own.
+            urgency = 0.0 if number else _SEARCH * len(work[0].coordinates)
+            crew.add(("torsion", name), urgency, settled_torsion, *work, self.tolerance)
 
     def _first(self) -> tuple[tuple[Sequence[Tongue], ...], str]:
         """Tongues of the file's own model, if they can be computed, and the first verdict in words."""
@@ -209,6 +207,8 @@ class _Found:
             self._take_teeth(crew, which, result)
         else:
             self.found[kind, which] = result
+            if name == ("torsion", next(iter(self.torsion), None)):
+                self._take_own_torsion(crew, result)
 
     def _take_case(self, crew: Crew, number: int, tried: _Tried) -> None:
         case, failed, start = self.cases[number], [], self.cases[number].model
@@ -253,6 +253,15 @@ class _Found:
             self._keep(crew, which, Outcome(here, found.tongues, found.settled, found.growth_moved))
         done = sum(place > 0 for _, place in {**self.outcomes, **self.failed})
         self.say(f"other teeth {done} of {len(self.others)} known so far: {variant.name}")
+
+    def _take_own_torsion(self, crew: Crew, settled: SettledTorsion) -> None:
+        """Look further at the gearbox as its file has it, its shafts with as many modes as its tongues needed."""
+        torsional: Any = self.file.torsional
+        if any(modes := modes_of(settled.model)):
+            torsional = replace(torsional, modes=modes)
+        crew.add(("response", ""), 0.0, _response, self.file, torsional)
+        if self.file.tolerances.given_in_torsion:
+            self._add_worst(crew, TORSION, worst_case_in_torsion, torsional)
 
     def _keep(self, crew: Crew, which: tuple[int, int], outcome: Outcome) -> None:
         self.outcomes[which] = outcome

@@ -27,7 +27,7 @@ _ROUNDS = 8
 # Parts of the reach at which growth is foretold of a pair that meets beyond it or not at all.
 _PLACES = np.array([0.25, 0.5, 0.75, 1.0])
 # Pairs of multipliers with a smaller product are left alone: nothing brings them back to 1 within a step.
-_DECAYED = 1e-6
+_DECAYED = 1e-3
 
 
 def meetings(

@@ -489,10 +489,10 @@ class Recorder:
     """Crew that only remembers what there is to do."""
 
     def __init__(self):
-        self.added = []
+        self.added = {}
 
-    def add(self, name, *work):
-        self.added.append(name)
+    def add(self, name, urgency, function, *arguments):
+        self.added[name] = arguments
 
 
 def test_a_main_model_that_cannot_be_computed_leaves_the_others_to_be():
@@ -525,6 +525,21 @@ def test_the_first_verdict_says_so_if_there_is_none(monkeypatch):
         "the drive as its file has it, in the basis of the file: it could not be computed (it does not converge)"
     ]
     assert ("case", 0) in crew.added
+
+
+def test_what_follows_in_torsion_has_the_modes_that_its_tongues_needed():
+    text = (DRIVES / "gearbox_table_7_1.yaml").read_text(encoding="utf-8")
+    file = parse_drive(text + NARROW)
+    long = replace(file, torsional=HeavyShafts(file.torsional, 0.0, 1.5, modes=(0, 14)))
+    for each, modes in ((long, (0, 28)), (file, None)):
+        work, crew = _Found(each, 0.02, 1, lambda words: None), Recorder()
+        own, other, *_ = work.torsion
+        found = replace(each.torsional, modes=modes) if modes else each.torsional
+        work.take(crew, ("torsion", other), SettledTorsion(found, each.requirements.speeds, (), settled=True))
+        assert crew.added == {}
+        work.take(crew, ("torsion", own), SettledTorsion(found, each.requirements.speeds, (), settled=True))
+        assert crew.added["response", ""] == (each, found)
+        assert crew.added["worst", TORSION][1] == found
 
 
 @pytest.mark.slow
