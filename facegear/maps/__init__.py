@@ -5,7 +5,7 @@ by `rows`, or from cell to cell (`cells`), as the systems of a `sweep` have in c
 tongues in the `scans` of `scanning`, which looks at all `meetings` of multipliers; values of a parameter at which one
 closes are in `closing`, tips in which one ends in `lobes`, the largest growth rate and where it vanishes in `peaks`,
 derivatives in `sensitivity` and `exponents`. `campbell` has natural motions over speed, `response_map` the steady
-response to forces where the model is stable. Work is shared out over processes, and kept on disk, by `parallel` and
-its `crew`.
+response to forces where the model is stable, with its `resonance_peaks`. Work is shared out over processes, and kept
+on disk, by `parallel` and its `crew`.
 Public: `stability_map`, `tongues`, `frequency_response`, `response_map`.
 """

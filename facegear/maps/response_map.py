@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq, minimize_scalar
 
 from facegear.floquet.labels import resonance
 from facegear.floquet.methods import Method
 from facegear.floquet.models import Model, parameter_path, replace_parameter, require_model, system_at
-from facegear.floquet.modes import mean_matrices, natural_exponents
 from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.response import SteadyResponse, steady_response
 from facegear.maps.axes import checked_speeds, checked_values, require_cells, speed_coordinates
 from facegear.maps.parallel import computed, parts_of
+from facegear.maps.resonance_peaks import peaks_of, resonances_between
 from facegear.support.parameters import number_of_workers, within
 from facegear.support.threads import one_thread
 from facegear.support.types import FloatArray
@@ -34,12 +33,8 @@ _STATISTICS = ("mean", "rms", "lowest", "highest")
 _QUANTITIES = {"displacement": "u of the load", "force": "force of the load"}
 # Part of its speed to which that of a peak is found.
 _RESOLUTION = 1e-8
-# Harmonics of the mesh that are looked for between speeds.
-_HARMONICS = 6
-# Part of the largest force that is no peak, but rounding.
-_NOISE = 1e-10
-# Steps of the resolution within which a peak is at a border of instability.
-_AT_BORDER = 10.0
+# Numbers of a speed that are the rms, the lowest and the highest value of a force.
+_OF_PEAKS = slice(5, 8)
 
 
 @one_thread()
@@ -110,7 +105,7 @@ def frequency_response(
     asked = _asked(system_at(model, float(speeds[0])), method, together)
     found = _computed([model], speeds, asked, jobs, progress, cache_directory)[0]
     _require_some(found, model, float(speeds[0]), method)
-    between = _resonances_between(model, speeds, resolution)
+    between = resonances_between(model, speeds, resolution)
     # Looked for coarsely, a resonance may be where one of the speeds is.
     at, where = np.unique(np.concatenate([speeds, between]), return_index=True)
     every = np.concatenate([found, _computed([model], between, asked, jobs, progress, cache_directory)[0]])
@@ -119,7 +114,15 @@ def frequency_response(
         "local maxima that show at the speeds, or where one of the first six harmonics of the mesh meets a natural "
         "frequency of the mean system; none at the first and last speed, nor at a border of instability"
     )
-    peaks, dataset.attrs["at_borders"] = _peaks(model, at, every[where], asked, resolution)
+
+    def forces(speed: float) -> FloatArray:
+        return _numbers(model, speed, asked)[:, _OF_PEAKS]
+
+    def label(speed: float) -> str:
+        response = _response(model, speed, asked)
+        return "" if response is None else resonance(response).label
+
+    peaks, dataset.attrs["at_borders"] = peaks_of(at, every[where][..., _OF_PEAKS], forces, label, resolution)
     return dataset.assign(peaks)
 
 
@@ -338,114 +341,3 @@ def _dataset(
             "facegear_version": version("facegear"),
         },
     )
-
-
-def _peaks(
-    model: Model, speeds: FloatArray, numbers: FloatArray, asked: _Asked, resolution: float
-) -> tuple[dict[str, Any], int]:
-    """Local maxima of the rms of each load's force over speed, each found between its neighbours and labelled.
-
-    From numbers of :func:`_numbers` at ascending speeds (S,), shape (S, loads, 10). Those at a border of instability
-    are counted only.
-    """
-    from scipy.signal import find_peaks
-
-    peaks: list[tuple[float, int, float, float, float, str]] = []
-    at_borders = 0
-    for load in range(numbers.shape[1]):
-        rms, forces = numbers[:, load, 5], np.abs(numbers[:, load, 6:8])
-        noise = _NOISE * float(np.nan_to_num(forces).max())
-        # Next to where nothing is known nobody can tell.
-        finite = np.flatnonzero(np.isfinite(rms))
-        for run in np.split(finite, np.flatnonzero(np.diff(finite) > 1) + 1):
-            for i in find_peaks(rms[run], prominence=max(noise, np.finfo(float).tiny))[0].tolist():
-                three = run[i - 1 : i + 2]
-                known = dict(zip(speeds[three].tolist(), numbers[three], strict=True))
-                speed, found, at_border = _settled(model, asked, load, known, resolution)
-                if at_border:
-                    at_borders += 1
-                    continue
-                response = _response(model, speed, asked)
-                label = "" if response is None else resonance(response).label
-                peaks.append((speed, load, *found[load, 5:8].tolist(), label))
-    peaks.sort()
-    columns = [list(column) for column in zip(*peaks, strict=True)] if peaks else [[]] * 6
-    places, loads, values, lowest, highest, labels = columns
-    extremes = {"lowest": lowest, "highest": highest}
-    variables = {
-        "peak_speed": (
-            "peak",
-            np.array(places, dtype=float),
-            {"units": "rad/s", "long_name": "speed of a peak"},
-        ),
-        "peak_load": ("peak", np.array(loads, dtype=int), {"long_name": "load"}),
-        "peak_force_rms": (
-            "peak",
-            np.array(values, dtype=float),
-            {"long_name": "rms of the force's varying part"},
-        ),
-        **{
-            f"peak_force_{name}": (
-                "peak",
-                np.array(column, dtype=float),
-                {"long_name": f"{name} force over the period"},
-            )
-            for name, column in extremes.items()
-        },
-        "peak_label": (
-            "peak",
-            np.array(labels, dtype=str),
-            {"long_name": "number of the mode / harmonic of the mesh"},
-        ),
-    }
-    return variables, at_borders
-
-
-def _settled(
-    model: Model, asked: _Asked, load: int, known: dict[float, FloatArray], resolution: float
-) -> tuple[float, FloatArray, bool]:
-    """Find a peak of a load between the first and the last of three known speeds.
-
-    Returns its speed and numbers, and whether a speed without a response is all but as near as the resolution.
-    """
-    bracket = tuple(known)
-    numbers = dict(known)
-
-    def depth(speed: float) -> float:
-        if speed not in numbers:
-            numbers[speed] = _numbers(model, speed, asked)
-        return -float(np.nan_to_num(numbers[speed][load, 5]))
-
-    if depth(bracket[1]) < min(depth(bracket[0]), depth(bracket[2])):
-        minimize_scalar(depth, bracket=bracket, method="brent", options={"xtol": resolution})
-    best = min(numbers, key=depth)
-    unknown = [speed for speed, found in numbers.items() if np.isnan(found[load, 5])]
-    at_border = any(abs(speed - best) <= _AT_BORDER * resolution * best for speed in unknown)
-    return best, numbers[best], at_border
-
-
-def _resonances_between(model: Model, speeds: FloatArray, resolution: float) -> FloatArray:
-    """Speeds at which a natural frequency meets a harmonic of the mesh, if none of those given is near enough to tell.
-
-    Near enough is the half width of the resonance, the decay of the natural motion over its frequency.
-    """
-
-    def detuned(speed: float) -> tuple[FloatArray, FloatArray]:
-        """Frequencies less each harmonic [rad/s], ascending, and decays, shapes (harmonics, n) and (n,)."""
-        system = model.system(speed)
-        exponents = natural_exponents(*mean_matrices(system))
-        exponents = exponents[np.argsort(exponents.imag)][system.size :]
-        harmonics = 2.0 * np.pi / system.period * np.arange(1, _HARMONICS + 1)
-        return exponents.imag - harmonics[:, np.newaxis], -exponents.real
-
-    found = []
-    ends = [detuned(speed) for speed in speeds.tolist()]
-    for low, high, (first, decay), (last, _) in zip(speeds, speeds[1:], ends, ends[1:], strict=False):
-        narrow = (first > 0.0) & (last < 0.0) & (np.abs(decay) < 0.5 * (first - last))
-        for harmonic, mode in np.argwhere(narrow).tolist():
-
-            def away(speed: float, harmonic: int = harmonic, mode: int = mode) -> float:
-                return float(detuned(speed)[0][harmonic, mode])
-
-            found.append(brentq(away, low, high, rtol=resolution, xtol=resolution * low))
-    return np.unique(np.array(found, dtype=float))
