@@ -71,14 +71,12 @@ class FrozenMotions:
         growth = self.exponents.real[order]
         return self.exponents[order][growth > np.append(-np.inf, np.maximum.accumulate(growth)[:-1])]
 
-    @cached_property
-    def live_angle(self) -> tuple[FloatArray, FloatArray]:
-        """Slowness, ascending, and angle [rad] by which the fastest motion turns that has not died within a period.
+    def live_angle(self, decay: float) -> tuple[FloatArray, FloatArray]:
+        """Slowness, ascending, and angle [rad] by which the fastest motion turns that decays by e^-decay or less.
 
         The angle is summed up from the first slowness on and runs straight between.
         """
-        decay = np.maximum(-self.exponents.real, _DEAD / (2.0 * self.high))
-        dead = _DEAD / decay
+        dead = decay / np.maximum(-self.exponents.real, decay / (2.0 * self.high))
         slowness = np.unique(np.clip(np.append(dead, [self.low, self.high]), self.low, self.high))
         middle = (slowness[1:] + slowness[:-1]) / 2.0
         fastest = np.where(dead > middle[:, None], np.abs(self.exponents.imag), 0.0).max(axis=1)
@@ -89,9 +87,12 @@ class FrozenMotions:
         """Whether no motion dies within the shortest period."""
         return bool((-self.exponents.real * self.low < _DEAD / 2.0).all())
 
-    def points(self, step: float, fewest: int) -> FloatArray:
-        """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range."""
-        slowness, angle = self.live_angle
+    def points(self, step: float, fewest: int, decay: float) -> FloatArray:
+        """Slowness from end to end, neighbours apart by `step` [rad] at most and by 1/`fewest` of the range.
+
+        The angle is that of :meth:`live_angle`.
+        """
+        slowness, angle = self.live_angle(decay)
         density = angle / step + fewest * (slowness - self.low) / (self.high - self.low)
         # Where nothing oscillates there are the two ends.
         places = np.linspace(0.0, density[-1], max(int(np.ceil(density[-1])), 1) + 1)
@@ -102,7 +103,7 @@ class FrozenMotions:
     @cached_property
     def windows(self) -> tuple[tuple[float, float], ...]:
         """Parts of the range on each of which one series is tried."""
-        return tuple(pairwise(self.points(_WINDOW_ANGLE, 0).tolist()))
+        return tuple(pairwise(self.points(_WINDOW_ANGLE, 0, _DEAD).tolist()))
 
     @property
     def matrices(self) -> int:

@@ -26,8 +26,8 @@ _REACH = 1.0
 _ROUNDS = 8
 # Parts of the reach at which growth is foretold of a pair that meets beyond it or not at all.
 _PLACES = np.array([0.25, 0.5, 0.75, 1.0])
-# Pairs of multipliers with a smaller product are left alone: in a step, by 0.4 rad of the fastest motion, nothing brings
-# exponents back to 0 that are 3.5 below it on the average.
+# Pairs of multipliers with a smaller product are left alone. Within a step, in which the fastest motion turns by 0.4
+# rad, nothing brings exponents back to 0 that are 3.5 below it on the average.
 _DECAYED = 1e-3
 
 

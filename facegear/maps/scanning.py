@@ -13,14 +13,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from facegear.floquet.multiplier_curves import MultiplierCurve
+from facegear.floquet.multiplier_curves import FrozenMotions, MultiplierCurve
 from facegear.maps.meetings import meetings
 from facegear.maps.scans import SPEED_TOLERANCE, Motion, Scan
 from facegear.support.types import FloatArray
 
-# Largest angle [rad] by which the fastest live motion turns from one sample to the next.
-SAMPLE_ANGLE = 0.4
-FEWEST_SAMPLES = 64
+# Largest angle [rad] by which the fastest motion turns from one sample to the next that decays in a period by less than
+# e⁻⁸: in a pair with it no other has been followed by then (`meetings`), as long as none grows a great deal.
+_SAMPLE_ANGLE, _DECAY = 0.4, 8.0
+_FEWEST_SAMPLES = 64
 # Between unstable samples the growth may differ from a straight line by this part of itself.
 _STRAIGHT = 0.25
 _MOST_HALVINGS = 40
@@ -29,12 +30,17 @@ _MOST_HALVINGS = 40
 def scan_of(curve: MultiplierCurve, threshold: float, hints: Sequence[float]) -> Scan:
     """Spectral radii on a grid, at all meetings of multipliers that matter, and wherever growth may pass between."""
     low, high = 1.0 / curve.highest_speed, 1.0 / curve.lowest_speed
-    grid = curve.motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES)
+    grid = first_grid(curve.motions)
     seeds = np.concatenate([grid, [1.0 / speed for speed in hints if low < 1.0 / speed < high]])
     places, looked_at = meetings(curve, seeds, _steps(grid, seeds), threshold)
     scan = Scan.of(curve, np.array([curve.lowest_speed, curve.highest_speed])).with_samples(looked_at)
     scan = _rising(curve, scan.with_speeds(curve, 1.0 / places), threshold)
     return scan.with_samples(_gaps(curve, scan, threshold))
+
+
+def first_grid(motions: FrozenMotions) -> FloatArray:
+    """Slowness 1/speed at which all motions are looked at first [s/rad], ascending."""
+    return motions.points(_SAMPLE_ANGLE, _FEWEST_SAMPLES, _DECAY)
 
 
 def _steps(grid: FloatArray, points: FloatArray) -> FloatArray:

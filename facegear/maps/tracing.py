@@ -23,7 +23,7 @@ from facegear.floquet.periodic import PeriodicSystem
 from facegear.floquet.rigid_motion import rigid_motions
 from facegear.maps.parallel import computed, parts_of
 from facegear.maps.peaks import largest_between
-from facegear.maps.scanning import FEWEST_SAMPLES, SAMPLE_ANGLE, scan_of
+from facegear.maps.scanning import first_grid, scan_of
 from facegear.maps.scans import SPEED_TOLERANCE, Scan
 from facegear.support.parameters import ascending, finite_array, number_of_workers, within
 from facegear.support.threads import one_thread
@@ -187,7 +187,7 @@ def search_seconds(model: Model, speeds: ArrayLike) -> float:
     low, high = ascending("speeds", speeds, "rad/s")
     motions = FrozenMotions.of(model, 1.0 / high, 1.0 / low)
     size = 2 * system_at(model, high).size
-    samples = motions.points(SAMPLE_ANGLE, FEWEST_SAMPLES).size
+    samples = first_grid(motions).size
     return float(samples * (_LEAST_SECONDS + _SECONDS * size**_POWER))
 
 

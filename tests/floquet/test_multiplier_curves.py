@@ -38,7 +38,7 @@ def test_degree_is_where_bessel_functions_have_ended():
     orders = np.arange(200)
     last = orders[2 * np.abs(jv(orders, size)) > 1e-12].max()
     assert last <= degree <= last + 2
-    assert motions.live_angle[1][-1] == pytest.approx(2 * size, rel=1e-12)
+    assert motions.live_angle(30.0)[1][-1] == pytest.approx(2 * size, rel=1e-12)
 
 
 def test_what_dies_within_a_period_does_not_count():
@@ -46,15 +46,18 @@ def test_what_dies_within_a_period_does_not_count():
     low, high = 0.05 / (2 * np.pi), 0.5 / (2 * np.pi)
     motions = FrozenMotions.of(Oscillators((1000.0, 20.0), (600.0, 0.1)), low, high)
     fast, slow = np.sqrt(1000.0**2 - 300.0**2), np.sqrt(20.0**2 - 0.05**2)
-    angle = np.interp(np.array([0.05, 0.1, 0.5]) / (2 * np.pi), *motions.live_angle)
+    angle = np.interp(np.array([0.05, 0.1, 0.5]) / (2 * np.pi), *motions.live_angle(30.0))
     assert angle == pytest.approx([0.0, 0.05 * fast, 0.05 * fast + 0.4 * slow], rel=1e-9)
+    # By e^-24 it has decayed at a slowness of 0.08/2π.
+    angle = np.interp(np.array([0.05, 0.08, 0.5]) / (2 * np.pi), *motions.live_angle(24.0))
+    assert angle == pytest.approx([0.0, 0.03 * fast, 0.03 * fast + 0.42 * slow], rel=1e-9)
 
 
 def test_points_are_no_further_apart_than_asked():
     motions = FrozenMotions.of(Oscillators((1000.0, 20.0), (600.0, 0.1)), 0.008, 0.08)
-    points = motions.points(0.2, 64)
+    points = motions.points(0.2, 64, 30.0)
     assert points[[0, -1]].tolist() == [0.008, 0.08]
-    slowness, angle = motions.live_angle
+    slowness, angle = motions.live_angle(30.0)
     assert np.diff(np.interp(points, slowness, angle)).max() <= 0.2 * (1 + 1e-9)
     assert np.diff(points).max() <= (0.08 - 0.008) / 64 * (1 + 1e-9)
 

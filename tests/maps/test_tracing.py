@@ -511,7 +511,7 @@ def test_a_tongue_between_a_slow_and_a_dying_motion_is_found_wherever_samples_li
     drive = Drive(27, 98, 3.175e-3)
     body = Body(drive, 0.0342979519, 0.0374231916, nodal_circles=2, nodal_diameters=3)
     load = MeshLoad(stiffness=0.132025752, damping=5.9420277e-6, mass=1.44288192)
-    monkeypatch.setattr(scanning, "SAMPLE_ANGLE", angle)
+    monkeypatch.setattr(scanning, "_SAMPLE_ANGLE", angle)
     found = tongues(Transverse(body, load), rad_per_s([422.492858, 881.68634]), progress=False)
     assert found[0].label == "(1+7)/1"
     assert rpm([found[0].lower, found[0].upper]) == pytest.approx([443.0032, 443.7618], abs=1e-3)
