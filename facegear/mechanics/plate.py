@@ -42,7 +42,8 @@ class Body:
     nodal_circles : int
         M, the largest number of nodal circles of the modes, 0 to 4.
     nodal_diameters : int
-        N, the largest number of nodal diameters, 0 to 10.
+        N, the largest number of nodal diameters, 0 to 10. With M = 1 and N = 3, the modes of chapter 4, borders of
+        unstable speeds are wrong by a percent or two: raise both until what is asked for stands still.
 
     Raises
     ------
