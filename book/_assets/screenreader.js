@@ -26,9 +26,10 @@
   window.addEventListener("resize", reachFigures);
 
   // Tables and equations that scroll say so (book.css has the words). Their size changes when MathJax has set them.
+  const TABLES = ".pst-scrollable-table-container, .cell_output .text_html, div.table";
   function sayWhatMoves() {
     const isWide = (box) => box !== null && box.scrollWidth > box.clientWidth + 1;
-    for (const box of document.querySelectorAll(".bd-article :is(.pst-scrollable-table-container, .cell_output .text_html)")) {
+    for (const box of document.querySelectorAll(`.bd-article :is(${TABLES})`)) {
       box.classList.toggle("moves-sideways", isWide(box));
       if (isWide(box)) box.setAttribute("tabindex", "0");
     }
@@ -40,7 +41,7 @@
 
   window.addEventListener("load", function () {
     const watch = new ResizeObserver(() => window.requestAnimationFrame(sayWhatMoves));
-    document.querySelectorAll(".bd-article :is(.pst-scrollable-table-container, div.math)").forEach((box) => watch.observe(box));
+    document.querySelectorAll(`.bd-article :is(${TABLES}, div.math)`).forEach((box) => watch.observe(box));
     sayWhatMoves();
   });
 

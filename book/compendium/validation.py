@@ -95,10 +95,10 @@ def as_markdown(values: Sequence[OutsideValue]) -> str:
     for value in values:
         # Enough to see the deviation in.
         digits = 10 if value.deviation < 1e-7 else 8
-        unit = f" {value.unit}" if value.unit else ""
+        unit = f" [{value.unit}]" if value.unit else ""
         shown = f".{digits}g" if value.decimals is None else f".{value.decimals}f"
-        numbers = f"{value.outside:{shown}}{unit} | {value.found:.{digits}g}{unit}"
-        lines.append(f"| {value.what} | {value.route} | {numbers} | {readable(value.deviation)} |")
+        numbers = f"{value.outside:{shown}} | {value.found:.{digits}g}"
+        lines.append(f"| {value.what}{unit} | {value.route} | {numbers} | {readable(value.deviation)} |")
     return "\n".join(lines)
 
 

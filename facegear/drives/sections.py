@@ -154,8 +154,8 @@ def bases(found: Findings) -> Section:
     rows = []
     for name, *row in zip(*report_columns.basis_columns(found.bases).values(), strict=True):
         circles, diameters, share, moved = row
-        told = f"{100 * moved:.2f}" if np.isfinite(moved) else ""
-        rows.append((name, str(circles), str(diameters), f"{100 * share:.2f}", told))
+        told = f"{100 * moved:.1f}" if np.isfinite(moved) else ""
+        rows.append((name, str(circles), str(diameters), f"{100 * share:.1f}", told))
     headings = (
         "model",
         "nodal circles",

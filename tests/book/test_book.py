@@ -193,6 +193,7 @@ def test_page_is_whole_and_readable(look: Callable[[int, str], Visit], width: in
     assert page.locator("mjx-merror").count() == 0
     if width >= 1280:
         assert not page.evaluate(CUT_FORMULAS)
+        assert not page.evaluate(CUT_TABLES)
     assert not re.search(r"\$\$|\\\(|\\\[|\\begin\{", page.locator(".bd-article").evaluate(TEXT_OUTSIDE_CODE))
 
     for picture in page.locator("img").evaluate_all(PICTURES):
@@ -225,6 +226,13 @@ OVERFLOW = """width => {
     .filter(element => element.getBoundingClientRect().right > innerWidth + 1 && !inside(element))
     .map(element => element.outerHTML.slice(0, 120));
 }"""
+
+# Tables of which columns are out of sight.
+CUT_TABLES = """() => [...document.querySelectorAll(".bd-article table")]
+  .filter(table => [".pst-scrollable-table-container", ".text_html", "div.table"]
+    .map(box => table.closest(box))
+    .some(box => box !== null && box.clientWidth > 0 && box.scrollWidth > box.clientWidth + 1))
+  .map(table => table.innerText.slice(0, 60))"""
 
 # Displayed formulas that would have to be scrolled.
 CUT_FORMULAS = """() => [...document.querySelectorAll('mjx-container[display="true"]')]
@@ -547,6 +555,7 @@ def test_a_figure_that_moves_sideways_says_so(visit: Callable[..., Visit], width
         ("notebooks/90_ledger.html", NARROWEST, ".pst-scrollable-table-container"),
         ("notebooks/04_one_pinion.html", NARROWEST, "div.math"),
         ("notebooks/90_ledger.html", 1280, ".pst-scrollable-table-container"),
+        ("notebooks/your_drive.html", NARROWEST, "div.table"),
     ],
 )
 def test_tables_and_equations_that_move_sideways_say_so(

@@ -31,6 +31,17 @@ def test_deviation_is_relative_where_there_is_a_unit_and_absolute_for_small_numb
     assert validation.OutsideValue("x", "by hand", -4.0, -2.0).deviation == pytest.approx(0.5)
 
 
+def test_a_unit_stands_beside_the_quantity_once():
+    values = [
+        validation.OutsideValue("f", "by hand", 200.0, 201.0, "Hz"),
+        validation.OutsideValue("x", "table", 2.0, 2.0),
+    ]
+    assert validation.as_markdown(values).splitlines()[2:] == [
+        "| f [Hz] | by hand | 200 | 201 | 0.005 |",
+        "| x | table | 2 | 2 | 0 |",
+    ]
+
+
 @pytest.mark.parametrize(
     ("value", "text"),
     [
