@@ -91,7 +91,7 @@ def readable(value: float) -> str:
 
 def as_markdown(values: Sequence[OutsideValue]) -> str:
     """Return values from outside as a Markdown table."""
-    lines = ["| quantity | from outside | value | here | deviation |", "|---|---|--:|--:|--:|"]
+    lines = ["| quantity | source | value | here | deviation |", "|---|---|--:|--:|--:|"]
     for value in values:
         # Enough to see the deviation in.
         digits = 10 if value.deviation < 1e-7 else 8

@@ -47,7 +47,7 @@ from facegear.floquet.modified_models import Excited
 from facegear.floquet.piecewise import PiecewiseChebyshev
 from facegear.maps.crew import Crew
 from facegear.maps.response_map import frequency_response
-from facegear.maps.tracing import Tongue
+from facegear.maps.tracing import Searched
 from facegear.mechanics.contact import Contact
 from facegear.mechanics.pinions_on_disk import FaceGears
 from facegear.support.parameters import number_of_workers, rpm
@@ -165,16 +165,16 @@ class _Found:
             urgency = 0.0 if number else _SEARCH * len(work[0].coordinates)
             crew.add(("torsion", name), urgency, settled_torsion, *work, self.tolerance)
 
-    def _first(self) -> tuple[tuple[Sequence[Tongue], ...], str]:
-        """Tongues of the file's own model, if they can be computed, and the first verdict in words."""
+    def _first(self) -> tuple[tuple[Searched, ...], str]:
+        """Search the speeds with the file's own model, if it can be computed, and give the first verdict in words."""
         try:
             found = found_around(self.cases[0].model, self.judged)
         except ArithmeticError as error:
             return (), f"it could not be computed ({told(error)})"
-        share = unstable_share(within(self.cases[0].model, found, self.speeds), self.speeds)
+        share = unstable_share(within(self.cases[0].model, found.tongues, self.speeds), self.speeds)
         return (found,), f"unstable at {100 * share:.3g} % of the speeds"
 
-    def _add_case(self, crew: Crew, number: int, case: Variant, *known: Sequence[Tongue]) -> None:
+    def _add_case(self, crew: Crew, number: int, case: Variant, *known: Searched) -> None:
         work = (case.model, self.speeds, self.judged, self.tolerance, self.most_steps, *known)
         crew.add(("case", number), _CASES_FIRST, _tried, *work)
 
@@ -338,7 +338,7 @@ def _tried(
     judged: tuple[float, float],
     tolerance: float,
     most_steps: int,
-    known: Sequence[Tongue] | None = None,
+    known: Searched | None = None,
 ) -> _Tried:
     try:
         found = settled_tongues(

@@ -21,7 +21,7 @@ from facegear.floquet.labels import growth_and_combination
 from facegear.floquet.models import Model
 from facegear.floquet.multipliers import growth_rate
 from facegear.maps.peaks import largest_between
-from facegear.maps.tracing import Tongue, tongues
+from facegear.maps.tracing import Searched, Tongue, searched
 from facegear.mechanics.disk import disk_stiffness, reference_stiffness
 from facegear.mechanics.edge_stiffness import complete_harmonics
 from facegear.mechanics.pinions_on_disk import FaceGears
@@ -37,8 +37,11 @@ _WIDE = 1.5
 _TRIED = 17
 # Part by which a wide range without a tongue is looked at beyond its ends.
 _BESIDE = 1.1
-# A border outside the range may come nearer by so many times what it moved from one basis to the next.
+# A border outside the range may come nearer by so many times what it moved from one basis to the next, and so may the
+# largest growth rate come nearer to 0 where nothing is unstable.
 _ONWARD = 2.0
+# Rate of decay [1/s] that is none: rounding of a multiplier, over the shortest period.
+_UNDAMPED = 1e-3
 # Growth in a period from which a speed counts as unstable in a basis whose multipliers are known less well.
 _ROUGH = 1e-7
 
@@ -90,23 +93,29 @@ def _is_narrow(speeds: tuple[float, float]) -> bool:
     return high / low < _WIDE
 
 
-def found_around(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
-    """Trace tongues in a range, and beside it where the range is narrow or none is in it."""
+def found_around(model: Model, speeds: tuple[float, float]) -> Searched:
+    """Search a range, and beside it where the range is narrow or no tongue is in it."""
     low, high = speeds
     if _is_narrow(speeds):
         further = math.sqrt(_WIDE * low / high)
-        return traced(model, (low / further, high * further))
-    if found := traced(model, speeds):
+        return looked_at(model, (low / further, high * further), hints=(low, high))
+    if (found := looked_at(model, speeds)).tongues:
         return found
-    return (*traced(model, (low / _BESIDE, low)), *traced(model, (high, high * _BESIDE)))
+    below, above = (traced(model, ends) for ends in ((low / _BESIDE, low), (high, high * _BESIDE)))
+    return replace(found, tongues=(*below, *above))
+
+
+def looked_at(model: Model, speeds: tuple[float, float], hints: Sequence[float] = ()) -> Searched:
+    """Search a range; in a basis so large that multipliers are known less well, for tongues that grow faster."""
+    try:
+        return searched(model, speeds, hints=hints, progress=False)
+    except ArithmeticError:
+        return searched(model, speeds, threshold=_ROUGH, hints=hints, progress=False)
 
 
 def traced(model: Model, speeds: tuple[float, float]) -> tuple[Tongue, ...]:
-    """Trace tongues in a range; in a basis so large that multipliers are known less well, those that grow faster."""
-    try:
-        return tongues(model, speeds, progress=False)
-    except ArithmeticError:
-        return tongues(model, speeds, threshold=_ROUGH, progress=False)
+    """Trace tongues in a range, as :func:`looked_at`."""
+    return looked_at(model, speeds).tongues
 
 
 def within(model: Model, found: Sequence[Tongue], speeds: tuple[float, float]) -> tuple[Tongue, ...]:
@@ -251,7 +260,7 @@ class SettledTongues:
 def settled_tongues(
     model: FaceGears,
     speeds: tuple[float, float],
-    known: Sequence[Tongue] | None = None,
+    known: Searched | None = None,
     *,
     around: tuple[float, float] | None = None,
     tolerance: float = 0.02,
@@ -272,13 +281,14 @@ def settled_tongues(
         Drive in the first basis.
     speeds : tuple of float
         Lowest and highest speed [rad/s].
-    known : sequence of Tongue, optional
-        Tongues in the first basis, where they have been traced already, by :func:`found_around`.
+    known : Searched, optional
+        What :func:`found_around` has found in the first basis, where it has been asked already.
     around : tuple of float, optional
         Range in which they must stand still [rad/s], which has the other in it; that itself, if left out.
     tolerance : float
         Part of that range in which two bases in succession may disagree, 1e-6 to 0.5, and may still if borders outside
-        of it come nearer by twice as much as they have moved. They must also agree on whether there is any tongue.
+        of it come nearer by twice as much as they have moved. They must also agree on whether there is any tongue, and
+        where there is none what decays most slowly must still decay if its rate moves on by twice what it has moved.
     most_steps : int
         Largest number of bases, at least 1; with one only, nothing is said of how good it is.
 
@@ -296,16 +306,22 @@ def settled_tongues(
     integer_at_least("most_steps", most_steps, 1)
     judged = speeds if around is None else around
     steps: list[BasisStep] = []
-    before: tuple[Tongue, ...] = ()
+    before: Searched | None = None
     shown, still = model, 0
     for circles, diameters in _bases(model.gear.body, most_steps, judged[1]):
         shown = with_basis(model, circles, diameters) if steps else model
-        found = tuple(known) if known is not None and not steps else found_around(shown, judged)
-        here = within(shown, found, speeds)
+        found = known if known is not None and not steps else found_around(shown, judged)
+        here = within(shown, found.tongues, speeds)
         moved = disagreement(steps[-1].tongues, here, speeds) if steps else math.nan
         reaches = min(_lowest_left_out(model.gear.body, circles, diameters, judged[1])) >= 1.0
         steps.append(BasisStep(circles, diameters, here, moved, reaches))
-        still = still + 1 if len(steps) > 1 and _stands_still(before, found, judged, tolerance) else 0
+        still = (
+            still + 1
+            if before is not None
+            and _stands_still(before.tongues, found.tongues, judged, tolerance)
+            and not may_grow(before, found, judged)
+            else 0
+        )
         settled = SettledTongues(shown, speeds, tuple(steps), settled=True)
         if reaches and still >= (2 if _is_narrow(judged) else 1) and not settled.may_open:
             return settled
@@ -324,6 +340,18 @@ def _stands_still(
         _apart(each, other, speeds) <= tolerance and bool(cut(each, speeds)) == bool(cut(other, speeds))
         for each in (one, *_moved_on(before, found, speeds))
     )
+
+
+def may_grow(before: Searched, found: Searched, speeds: tuple[float, float]) -> bool:
+    """Tell whether in a range without tongues something would grow if what decays most slowly moved on as it has.
+
+    Without damping nothing decays, and whatever could open has.
+    """
+    low, high = speeds
+    if any(tongue.lower < high and low < tongue.upper for tongue in found.tongues):
+        return False
+    was, now = (each.fastest_between(low, high) for each in (before, found))
+    return min(was, now) < -_UNDAMPED and now + _ONWARD * abs(now - was) > 0.0
 
 
 def _overlap(one: Tongue, other: Tongue) -> bool:

@@ -19,11 +19,13 @@ from facegear.drives.basis import (
     GROWTH_MOVED,
     disagreement,
     growth_moved,
+    looked_at,
+    may_grow,
     traced,
     unstable_share,
     within,
 )
-from facegear.maps.tracing import Tongue
+from facegear.maps.tracing import Searched, Tongue
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.rods import MOST_MODES, shear_wave_speed
 from facegear.support.types import FloatArray
@@ -153,7 +155,8 @@ def settled_torsion(torsional: Any, speeds: tuple[float, float], tolerance: floa
     tolerance : float
         Part of the range in which half the modes may come to something else. They must also agree on whether there is
         any tongue, none beside the range may have come nearer by more than is left between, and where all of the range
-        is unstable the largest growth rate must agree to a tenth.
+        is unstable the largest growth rate must agree to a tenth. Where none of it is, what decays most slowly must
+        still decay if its rate moves on by twice what it has moved.
 
     Returns
     -------
@@ -169,13 +172,13 @@ def settled_torsion(torsional: Any, speeds: tuple[float, float], tolerance: floa
         return SettledTorsion(torsional, speeds, traced(torsional, speeds), settled=True)
     asked = _asked(torsional, speeds[1])
     wider = speeds[0] / _BESIDE, speeds[1] * _BESIDE
-    before: tuple[Tongue, ...] | None = None
+    before: Searched | None = None
     last: SettledTorsion | None = None
     for modes in _tried(modes_of(torsional)):
         model = replace(torsional, modes=modes)
         try:
-            around = traced(model, wider)
-            here = within(model, around, speeds)
+            around = looked_at(model, wider, hints=speeds)
+            here = within(model, around.tongues, speeds)
         except ArithmeticError:
             # Of many modes of strong dampers multipliers are not known well enough.
             if last is None:
@@ -189,7 +192,8 @@ def settled_torsion(torsional: Any, speeds: tuple[float, float], tolerance: floa
                 moved <= tolerance
                 and bool(last.tongues) == bool(here)
                 and not (unstable_share(here, speeds) >= _ALL and not faster <= GROWTH_MOVED)
-                and not _comes_in(before, around, wider, speeds)
+                and not _comes_in(before.tongues, around.tongues, wider, speeds)
+                and not may_grow(before, around, speeds)
             )
             covered = all(have >= need for have, need in zip(modes, asked, strict=True))
             last = SettledTorsion(model, speeds, here, agree and covered, moved, faster)

@@ -75,6 +75,29 @@ class Tongue:
         return self.upper - self.lower
 
 
+@dataclass(frozen=True, eq=False)
+class Searched:
+    """A range of speed that has been searched.
+
+    Attributes
+    ----------
+    tongues : tuple of Tongue
+        As :func:`tongues` has them.
+    speeds, growth_rates : ndarray, shape (m,)
+        Speeds looked at [rad/s], among them all at which two motions meet that could have made a tongue, and how fast
+        the fastest motion grows or decays there [1/s].
+    """
+
+    tongues: tuple[Tongue, ...]
+    speeds: FloatArray
+    growth_rates: FloatArray
+
+    def fastest_between(self, low: float, high: float) -> float:
+        """Largest growth rate at the speeds looked at between two [1/s]; NaN if there is none."""
+        inside = (self.speeds >= low) & (self.speeds <= high)
+        return float(self.growth_rates[inside].max()) if inside.any() else np.nan
+
+
 @dataclass(frozen=True)
 class TongueSection:
     """Tongues at one value of a swept parameter."""
@@ -133,6 +156,34 @@ def tongues(
     ...     print(f"{tongue.label}: {fg.rpm(tongue.lower):.1f} to {fg.rpm(tongue.upper):.1f} rpm")
     (1+8)/1: 545.0 to 549.5 rpm
     """
+    return searched(model, speeds, method=method, threshold=threshold, hints=hints, progress=progress).tongues
+
+
+def searched(
+    model: Model,
+    speeds: ArrayLike,
+    *,
+    method: Method | None = None,
+    threshold: float = 1e-8,
+    hints: ArrayLike = (),
+    progress: bool | None = None,
+) -> Searched:
+    """Search a range of speed as :func:`tongues` does, and tell how fast motions decay where there is none.
+
+    Parameters
+    ----------
+    model, speeds, method, threshold, hints, progress
+        As for :func:`tongues`.
+
+    Returns
+    -------
+    Searched
+
+    Raises
+    ------
+    TypeError, ValueError, ArithmeticError
+        As :func:`tongues`.
+    """
     require_model(model)
     low, high = ascending("speeds", speeds, "rad/s")
     threshold = within("threshold", threshold, 1e-12, 1e-2)
@@ -158,7 +209,10 @@ def tongues(
                 "facegear.floquet.radau.Radau"
             )
         scan = scan_of(curve.live, threshold, further.tolist())
-        return tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
+        found = tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
+    # The period is in inverse proportion to speed.
+    per_period = 1.0 / (system_at(model, high).period * high)
+    return Searched(found, scan.speeds, np.log(scan.radii) * scan.speeds * per_period)
 
 
 def search_seconds(model: Model, speeds: ArrayLike) -> float:

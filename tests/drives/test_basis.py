@@ -21,7 +21,7 @@ from facegear.drives.variants import plain_contacts
 from facegear.drives.verdict import driven
 from facegear.floquet.labels import Combination
 from facegear.floquet.multipliers import growth_rate
-from facegear.maps.tracing import Tongue, tongues
+from facegear.maps.tracing import Searched, Tongue, tongues
 from facegear.mechanics.edge_stiffness import DrivingForce
 from facegear.support.parameters import rad_per_s
 from tests.independent.complex_galerkin import multipliers
@@ -109,11 +109,12 @@ class TestSettledTongues:
         assert found.tongues == last.tongues
         assert found.unstable_share == pytest.approx(last.moved)
         assert found.model.body.nodal_diameters == 5
-        again = settled_tongues(CASE_1, self.RANGE, first.tongues, tolerance=0.05, most_steps=2)
+        known = basis.found_around(CASE_1, self.RANGE)
+        again = settled_tongues(CASE_1, self.RANGE, known, tolerance=0.05, most_steps=2)
         assert again.steps[0].tongues == first.tongues
         assert again.tongues == found.tongues
         # What is known is believed.
-        told = settled_tongues(CASE_1, self.RANGE, last.tongues, most_steps=1)
+        told = settled_tongues(CASE_1, self.RANGE, replace(known, tongues=last.tongues), most_steps=1)
         assert told.tongues == last.tongues
 
     def test_settles_where_nothing_moves(self):
@@ -196,15 +197,54 @@ class TestSettledTongues:
         ):
             assert basis._stands_still(before, found, narrow, 0.02) is stands
 
+    def test_no_tongue_in_two_bases_is_none_only_if_decay_stands_still_too(self):
+        """Stable in (1, 7) and in (2, 9), by 0.6 and 0.05 1/s; in the largest basis it grows."""
+        file = parse_drive(
+            "name: hidden\n"
+            "gears: {pinion_teeth: 26, gear_teeth: 130, module_mm: 3.175}\n"
+            "body: {thickness_ratio: 0.03, bore_radius_mm: 50}\n"
+            "pinions: {stiffness: 1.2, damping_us: 3, mass: 1.0}\n"
+            "operation: {lowest_speed_rpm: 544, highest_speed_rpm: 564, power_kW: 1, pinion_speed_rpm: 2700}\n"
+        )
+        model, speeds = driven(file, "dead", plain_contacts(file)["Tregold"]), file.requirements.speeds
+        few = settled_tongues(with_basis(model, 1, 5), speeds, most_steps=3)
+        assert [step.tongues for step in few.steps] == [(), (), ()]
+        assert not few.settled
+        # By another method, and without any scan.
+        assert growth_rate(with_basis(model, 4, 10).system(float(rad_per_s(551.5)))) == pytest.approx(
+            0.162, abs=2e-3
+        )
+
+    def test_how_near_to_growing_two_bases_without_a_tongue_may_be(self):
+        speeds = (10.0, 20.0)
+        for was, now, may in (
+            (-1.0, -0.9, False),
+            (-1.0, -0.7, False),
+            (-1.0, -0.6, True),
+            (-0.6, -1.0, False),
+            (-0.1, -1.0, True),
+            (-1e-9, -2e-9, False),  # undamped
+            (-1.0, -1e-9, True),
+        ):
+            before, found = (
+                Searched((), np.array([9.0, 15.0, 21.0]), np.array([5.0, rate, 5.0])) for rate in (was, now)
+            )
+            assert basis.may_grow(before, found, speeds) is may
+            with_one = replace(found, tongues=(interval(12.0, 13.0),))
+            assert basis.may_grow(before, with_one, speeds) is False
+
     def test_a_wide_range_without_a_tongue_is_looked_at_beyond_its_ends(self, monkeypatch):
         asked = []
 
-        def traced(model, speeds):
+        def looked_at(model, speeds, hints=()):
             asked.append(speeds)
-            return (interval(109.0, 111.0),) if speeds[0] == 100.0 else ()
+            found = (interval(109.0, 111.0),) if speeds[0] == 100.0 else ()
+            return Searched(found, np.array(speeds), np.array([-1.0, -2.0]))
 
-        monkeypatch.setattr(basis, "traced", traced)
-        assert basis.found_around(None, (10.0, 100.0)) == (interval(109.0, 111.0),)
+        monkeypatch.setattr(basis, "looked_at", looked_at)
+        found = basis.found_around(None, (10.0, 100.0))
+        assert found.tongues == (interval(109.0, 111.0),)
+        assert found.speeds.tolist() == [10.0, 100.0]
         assert asked == [
             (10.0, 100.0),
             (pytest.approx(10.0 / 1.1), 10.0),

@@ -14,7 +14,7 @@ from facegear.drives.drive_file import parse_drive
 from facegear.drives.findings import Findings
 from facegear.drives.shaft_modes import confirmed, natural_frequencies, settled_torsion, with_enough_modes
 from facegear.floquet.labels import Combination
-from facegear.maps.tracing import Tongue
+from facegear.maps.tracing import Searched, Tongue
 from facegear.mechanics.rods import shear_modulus
 from facegear.support.parameters import rad_per_s
 from tests.drives.drive_files import GEARBOX
@@ -122,8 +122,9 @@ def test_fewer_modes_than_the_mesh_asks_for_are_never_settled():
     ],
 )
 def test_half_of_the_modes_must_come_to_the_same(monkeypatch, half, all_of_them, settled):
-    def traced(model, speeds):
-        return half if model.modes == (7, 7) else all_of_them
+    def looked_at(model, speeds, hints=()):
+        found = half if model.modes == (7, 7) else all_of_them
+        return Searched(found, np.array(hints), np.array([-1.0, -1.0]))
 
     def cut(model, found, speeds):
         low, high = speeds
@@ -133,7 +134,7 @@ def test_half_of_the_modes_must_come_to_the_same(monkeypatch, half, all_of_them,
             if each.lower < high and each.upper > low
         )
 
-    monkeypatch.setattr(shaft_modes, "traced", traced)
+    monkeypatch.setattr(shaft_modes, "looked_at", looked_at)
     monkeypatch.setattr(shaft_modes, "within", cut)
     monkeypatch.setattr(shaft_modes, "_MOST_STEPS", 2)
     found = settled_torsion(FILE.torsional, SPEEDS)
@@ -141,13 +142,24 @@ def test_half_of_the_modes_must_come_to_the_same(monkeypatch, half, all_of_them,
     assert ("NOT SETTLED" in found.basis) is not settled
 
 
+@pytest.mark.parametrize(("decay", "settled"), [(-1.3, True), (-0.7, True), (-0.6, False)])
+def test_where_nothing_grows_with_half_the_modes_its_decay_must_stand_still_too(monkeypatch, decay, settled):
+    def looked_at(model, speeds, hints=()):
+        rate = -1.0 if model.modes == (7, 7) else decay
+        return Searched((), np.array(hints), np.array([2.0 * rate, rate]))
+
+    monkeypatch.setattr(shaft_modes, "looked_at", looked_at)
+    monkeypatch.setattr(shaft_modes, "_MOST_STEPS", 2)
+    assert settled_torsion(FILE.torsional, SPEEDS).settled is settled
+
+
 def test_modes_that_cannot_be_computed_leave_it_open(monkeypatch):
-    def traced(model, speeds):
+    def looked_at(model, speeds, hints=()):
         if model.modes == (7, 7):
-            return ()
+            return Searched((), np.array(hints), np.array([-1.0, -1.0]))
         raise ArithmeticError("multipliers are not known")
 
-    monkeypatch.setattr(shaft_modes, "traced", traced)
+    monkeypatch.setattr(shaft_modes, "looked_at", looked_at)
     found = settled_torsion(FILE.torsional, SPEEDS)
     assert not found.settled
     assert "7 modes of the output shaft; half as many could not be compared, NOT SETTLED" in found.basis
