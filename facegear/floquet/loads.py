@@ -26,7 +26,7 @@ ROUNDING_OF_A_FIT = 1e-11
 
 @dataclass(frozen=True, eq=False)
 class ContactLoad:
-    """One rank-one load: force φ w [m ü + c u̇ + k u] on the displacement u = φᵀq.
+    """One rank-one load: force φ w [m ü + c u̇ + k u] on u = φᵀq − e, e being 0 unless given.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class ContactLoad:
     stiffness, damping, mass : float
         k [N/m], c [N s/m], m [kg] (or rotational units, as the coordinates have it), not negative.
     rate : {"frozen", "total"}
-        "frozen": u̇ = φᵀq̇, ü = φᵀq̈ (the transverse chapters). "total": the derivative goes through the
+        Without e, "frozen": u̇ = φᵀq̇, ü = φᵀq̈ (the transverse chapters). "total": the derivative goes through the
         shape vector, u̇ = φᵀq̇ + φ̇ᵀq, ü = φᵀq̈ + 2φ̇ᵀq̇ + φ̈ᵀq (chapter 7). A jump of φ then means that contact
         is made or lost and gives no impulse; a jump of the slope φ̇ gives the mass a kick
         (:meth:`facegear.floquet.periodic.PeriodicSystem.velocity_kicks`).
@@ -43,9 +43,9 @@ class ContactLoad:
         Scalar periodic factor w of the force, for loads whose strength varies (Mathieu, Hill, Meissner, pairs that
         share a load). Not negative where the load has a mass, and without a jump where that mass is kicked.
     transmission_error : PiecewiseChebyshev, optional
-        Scalar e(t) [m] (or angle) by which the surfaces in contact depart from their place when nothing loads them:
-        the force is that of u − e. A jump of e means that another pair takes over and gives no impulse; under a mass
-        neither e nor its slope may jump.
+        Scalar e(t) [m] (or angle) by which the surfaces in contact depart from their place when nothing loads them. Its
+        derivatives are taken from those of u whatever the rate. A jump of e means that another pair takes over and
+        gives no impulse; under a mass neither e nor its slope may jump.
 
     Raises
     ------

@@ -71,14 +71,15 @@ def frequency_response(
     Returns
     -------
     xarray.Dataset
-        Along "speed" and "load", of the displacement u of each load and of its force, in the units of the model: mean
-        over the period, rms of what varies, lowest and highest value. Along "speed": `spectral_radius`, `condition`
-        (:class:`facegear.floquet.response.SteadyResponse`). Not a number where the model is unstable at that speed, or
-        no response is known. Along "peak": speed, load, rms, lowest and highest value of the force, and label of the
-        local maxima of that rms that show at the speeds, or where a natural frequency of the mean system meets one of
-        the first six harmonics of the mesh between speeds too far apart to show it. Narrower peaks from elsewhere may
-        be missed, and the first and last speed are none. Nor are places where that rms rises up to a border of
-        instability, at which it may have no bound: attribute `at_borders` counts those that were met.
+        Along "speed" and "load", of the displacement u = φᵀq − e of each load, e its transmission error, and of its
+        force, in the units of the model: mean over the period, rms of what varies, lowest and highest value. Along
+        "speed": `spectral_radius`, `condition` (:class:`facegear.floquet.response.SteadyResponse`). Not a number where
+        the model is unstable at that speed, or no response is known. Along "peak": speed, load, rms, lowest and highest
+        value of the force, and label of the local maxima of that rms that show at the speeds, or where a natural
+        frequency of the mean system meets one of the first six harmonics of the mesh between speeds too far apart to
+        show it. Narrower peaks from elsewhere may be missed, and the first and last speed are none. Nor are places
+        where that rms rises up to a border of instability, at which it may have no bound: attribute `at_borders` counts
+        those that were met.
 
     Raises
     ------
