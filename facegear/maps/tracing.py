@@ -210,9 +210,9 @@ def searched(
             )
         scan = scan_of(curve.live, threshold, further.tolist())
         found = tuple(_tongue(model, curve.method, *run) for run in _runs(curve.live, scan, threshold))
-    # The period is in inverse proportion to speed.
-    per_period = 1.0 / (system_at(model, high).period * high)
-    return Searched(found, scan.speeds, np.log(scan.radii) * scan.speeds * per_period)
+        # The period is in inverse proportion to speed.
+        periods = system_at(model, high).period * high / scan.speeds
+    return Searched(found, scan.speeds, np.log(scan.radii) / periods)
 
 
 def search_seconds(model: Model, speeds: ArrayLike) -> float:

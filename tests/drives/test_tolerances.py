@@ -16,7 +16,7 @@ from facegear.drives.verdict import driven
 from facegear.drives.worst_case import worst_case, worst_case_in_torsion
 from facegear.floquet.multipliers import growth_rate
 from facegear.geometry.drive import Drive
-from facegear.maps.tracing import tongues
+from facegear.maps.tracing import searched, tongues
 from facegear.mechanics.heavy_shafts import HeavyShafts
 from facegear.mechanics.torsional import Gearbox, Torsional
 from facegear.support.parameters import rad_per_s
@@ -223,13 +223,13 @@ def test_a_value_at_which_multipliers_are_known_less_well_does_not_leave_all_unk
     speeds = (float(rad_per_s(560.0)), float(rad_per_s(760.0)))
     thresholds = []
 
-    def roughly(model, around, *, threshold=1e-8, progress):
+    def roughly(model, around, *, threshold=1e-8, **rest):
         thresholds.append(threshold)
         if threshold < 5e-8 and model.shaft_stiffness_factor > 1.0:
             raise ArithmeticError("multipliers are known to 5e-08 only")
-        return tongues(model, around, threshold=threshold, progress=progress)
+        return searched(model, around, threshold=threshold, **rest)
 
-    monkeypatch.setattr(basis, "tongues", roughly)
+    monkeypatch.setattr(basis, "searched", roughly)
     found = worst_case_in_torsion(GEARBOX.torsional, speeds, Tolerances(shaft_stiffness=0.1))
     monkeypatch.undo()
     # With all of the damping and with half of it.
