@@ -149,7 +149,8 @@ def bases(found: Findings) -> Section:
         "A force at one point calls on all modes of the body. The basis is raised, the bearing being kept as "
         "it is in N/m, until it has all modes up to the mesh frequency at the highest speed and two in succession, "
         f"in a narrow range three, disagree in no more than {100 * found.tolerance:g} % of the speeds and agree on "
-        f"whether there is a tongue at all; at most {found.most_steps} are tried."
+        "whether there is a tongue at all, and where there is none on what decays most slowly; at most "
+        f"{found.most_steps} are tried."
     )
     rows = []
     for name, *row in zip(*report_columns.basis_columns(found.bases).values(), strict=True):

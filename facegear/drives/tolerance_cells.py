@@ -176,13 +176,12 @@ class BoxSearch:
             self._corner(springs, widest)
             for springs in sorted({corner for cell in cells for corner in cell.corners})
         ]
-        for cell in cells:
-            self._sweep(cell)
+        judged = [self._sweep(cell) for cell in cells]
         if unswept := [around for cell in cells if (around := self._unswept(cell)) is not None]:
             lowest, highest = min(low for low, _ in unswept), max(high for _, high in unswept)
             for corner in shared:
                 self._weak(corner, (lowest, highest), HALF)
-        finer = [half for cell in cells for half in self._halves(cell)]
+        finer = [half for cell, told in zip(cells, judged, strict=True) for half in self._halves(cell, told)]
         self._seconds = 0.0
         # The largest first: what is left at the end is small.
         number = count()
@@ -190,7 +189,7 @@ class BoxSearch:
         heapq.heapify(queue)
         while queue and self._seconds + self._needed(queue[0][-1]) < _SECONDS:
             *_, cell = heapq.heappop(queue)
-            for half in () if self._is_known(cell) else self._halves(cell):
+            for half in () if self._is_known(cell) else self._halves(cell, self._sweep(cell)):
                 heapq.heappush(queue, (-half.reach, next(number), half))
         self.possible += [cell.speeds for *_, cell in queue]
 
@@ -238,9 +237,9 @@ class BoxSearch:
             _stands(tongue, cell.speeds) for found in self.points.values() for tongue in found
         )
 
-    def _halves(self, cell: Cell) -> list[Cell]:
-        """Look at a cell, keep what it tells, and return halves where they could tell more."""
-        unsettled, corners = self._sweep(cell).open, self._at(cell)
+    def _halves(self, cell: Cell, judged: _Judged) -> list[Cell]:
+        """Keep what may stand in a cell that has been swept, and return halves where they could tell more."""
+        unsettled, corners = list(judged.open), self._at(cell)
         # What stands with half the damping alone is asked only where nothing stands in any case.
         if (around := self._unswept(cell)) is not None:
             weak = [self._weak(corner, around, HALF) for corner in corners]
