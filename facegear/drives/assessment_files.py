@@ -130,6 +130,7 @@ def _models(found: Assessment) -> Section:
     words = Paragraph(
         "Settled: the unstable speeds of two bases agree, of which the larger has all modes of the disk up to the mesh "
         "frequency; in a narrow range of three, also if borders beside it came nearer by twice as much as they moved. "
+        "Where nothing is unstable, what decays most slowly must still decay if its rate moved on by as much. "
         "In torsion: those with half the modes of the shafts and with all. Growth rates are those of the basis that "
         "stands beside them; in brackets, by how much of itself the largest differs in the basis before."
     )
